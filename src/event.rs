@@ -1,0 +1,156 @@
+//! What happened: the values that the log, the tests and later tools are made from. No text here.
+
+use crate::time::Instant;
+use crate::wire::ascii::BadAscii;
+use crate::wire::mbap::BadHeader;
+use crate::wire::rtu::BadCrc;
+use crate::wire::{Frame, NoiseCause};
+use crate::words::{AlarmCause, Refusal, RowId};
+
+/// Something that happened on a line, and when.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Event {
+    /// When, in the emulated world.
+    pub at: Instant,
+    /// What.
+    pub what: What,
+}
+
+/// Number of a drive on its bus, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct DriveId(pub u16);
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum What {
+    /// A drive heard a request and answered.
+    Transaction(Transaction),
+    /// A drive executed a broadcast, or refused to; either way it did not answer.
+    Broadcast {
+        /// Who.
+        drive: DriveId,
+        /// The request's PDU.
+        request: Frame,
+        /// Why it did not execute it.
+        refusal: Option<Refusal>,
+    },
+    /// A broadcast that nobody can execute, because it asks for an answer.
+    BroadcastRead {
+        /// The request's PDU.
+        request: Frame,
+    },
+    /// Traffic of others.
+    Foreign {
+        /// Its unit address.
+        unit: u8,
+        /// PDU.
+        pdu: Frame,
+        /// An answer rather than a request?
+        answer: bool,
+    },
+    /// A frame with a wrong CRC.
+    BadCrc {
+        /// The frame.
+        frame: Frame,
+        /// Both values.
+        crc: BadCrc,
+        /// The drive that answers such a frame with an exception, and the code.
+        answered: Option<(DriveId, u8)>,
+    },
+    /// An ASCII frame that does not add up.
+    BadAscii {
+        /// Its characters.
+        characters: Frame,
+        /// Why.
+        why: BadAscii,
+    },
+    /// Bytes that are no frame.
+    Noise {
+        /// The first of them.
+        head: Frame,
+        /// How many there were.
+        len: usize,
+        /// Why they are none.
+        why: NoiseCause,
+    },
+    /// A TCP stream that could not be followed and was closed.
+    Lost(BadHeader),
+    /// A drive did something without being asked on this line, or as a consequence.
+    Drive {
+        /// Who.
+        drive: DriveId,
+        /// Its unit address at the time.
+        unit: u8,
+        /// What.
+        change: Change,
+    },
+}
+
+/// A request to one drive and its answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transaction {
+    /// Who.
+    pub drive: DriveId,
+    /// The unit address that was asked.
+    pub unit: u8,
+    /// The request's PDU.
+    pub request: Frame,
+    /// The answer's PDU.
+    pub answer: Frame,
+    /// Why it was refused, if it was.
+    pub refusal: Option<Refusal>,
+}
+
+/// A change in a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// Power came on.
+    PoweredOn,
+    /// Initialised: it can be enabled.
+    Ready,
+    /// The power stage went on or off.
+    Enabled(bool),
+    /// An alarm was raised.
+    Alarm {
+        /// Why.
+        cause: AlarmCause,
+        /// The vendor's number.
+        code: u16,
+    },
+    /// The alarm is gone.
+    AlarmCleared,
+    /// An alarm reset came, but the alarm stays.
+    AlarmStays {
+        /// Why it was raised.
+        cause: AlarmCause,
+    },
+    /// An input word was not refreshed in time and returned to 0.
+    WordExpired {
+        /// The word.
+        word: RowId,
+        /// The row with its time.
+        hold: RowId,
+        /// How long it held, in milliseconds.
+        held_ms: u32,
+    },
+    /// The position register was set to 0.
+    PositionCleared,
+    /// All values were stored.
+    Stored,
+    /// All values are as they left the factory.
+    FactoryRestored,
+    /// It answers to another unit address now.
+    Unit {
+        /// The old one.
+        from: u8,
+        /// The new one.
+        to: u8,
+    },
+    /// An input terminal got another level.
+    Terminal {
+        /// Index from 0.
+        index: u8,
+        /// Carries a signal?
+        signal: bool,
+    },
+}

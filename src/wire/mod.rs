@@ -1,0 +1,36 @@
+//! Modbus on paper: frames, requests, answers. No time, no registers, no models.
+//!
+//! Application protocol: "MODBUS Application Protocol Specification V1.1b3". Frames: "MODBUS over
+//! Serial Line V1.02" (RTU 2.5.1, ASCII 2.5.2) and "MODBUS Messaging on TCP/IP V1.0b" (MBAP).
+
+pub mod ascii;
+mod checksum;
+mod frame;
+pub mod hex;
+pub mod mbap;
+mod request;
+mod response;
+pub mod rtu;
+
+pub use checksum::{crc16, lrc};
+pub use frame::{Adu, Frame, NoiseCause};
+pub use request::{LengthCheck, Malformed, Request, Span, Words};
+pub use response::{Exception, Response};
+
+/// Function codes that drives of this kind know.
+pub mod function {
+    /// Read Holding Registers.
+    pub const READ: u8 = 0x03;
+    /// Write Single Register.
+    pub const WRITE_ONE: u8 = 0x06;
+    /// Write Multiple Registers.
+    pub const WRITE_MANY: u8 = 0x10;
+    /// Set in the function code of an exception.
+    pub const EXCEPTION: u8 = 0x80;
+}
+
+/// The unit address that every drive hears and none answers.
+pub const BROADCAST: u8 = 0;
+
+/// Longest PDU: function code and 252 bytes (application protocol, 4.1).
+pub const PDU_MAX: usize = 253;

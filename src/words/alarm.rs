@@ -1,0 +1,16 @@
+//! Why a drive trips. The model says which number stands for which cause and what clears it.
+
+use super::words;
+
+words! {
+    /// A cause of an alarm.
+    AlarmCause {
+        OverCurrent "over_current" "too much motor current",
+        OverVoltage "over_voltage" "bus voltage too high",
+        UnderVoltage "under_voltage" "bus voltage too low",
+        Overload "overload" "too much torque for too long",
+        Encoder "encoder" "no or implausible feedback",
+        PositionDeviation "position_deviation" "command and feedback too far apart",
+        Forced "forced" "input `alarm_force` is active",
+    }
+}

@@ -1,0 +1,60 @@
+//! The words that models and behaviours share: causes, signals, quantities, actions, alarms.
+//!
+//! Rust speaks causes, YAML speaks numbers. A model says which number, bit or row stands for which
+//! word; a behaviour knows only the word. `docs/roles.md` is generated from the tables in here.
+
+mod action;
+mod alarm;
+mod cause;
+mod quantity;
+mod refusal;
+mod signal;
+
+pub use action::Action;
+pub use alarm::AlarmCause;
+pub use cause::Cause;
+pub use quantity::Quantity;
+pub use refusal::{Detail, Refusal, RowId};
+pub use signal::{Input, Inputs, Output, Outputs};
+
+/// A word with a name in files and a line of explanation: what the catalogue prints.
+pub trait Word: Copy + 'static {
+    /// Every word of this kind, in the order of the catalogue.
+    const ALL: &'static [Self];
+
+    /// The name in files.
+    fn name(self) -> &'static str;
+
+    /// What it means, in one line.
+    fn about(self) -> &'static str;
+
+    /// The word with that name.
+    fn parse(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|word| word.name() == name)
+    }
+}
+
+/// Declares an enum of words: variant, name in files, explanation.
+macro_rules! words {
+    ($(#[$doc:meta])* $type:ident { $($variant:ident $name:literal $about:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u8)]
+        pub enum $type {
+            $(#[doc = $about] $variant,)*
+        }
+
+        impl $crate::words::Word for $type {
+            const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            fn about(self) -> &'static str {
+                match self { $(Self::$variant => $about,)* }
+            }
+        }
+    };
+}
+pub(crate) use words;

@@ -1,0 +1,62 @@
+//! Named bits into and out of a drive.
+
+use super::words;
+
+words! {
+    /// A signal into the drive. Active while any of its sources is.
+    Input {
+        ServoOn "servo_on" "level: power stage on while active and no alarm stands against it",
+        AlarmReset "alarm_reset" "rising edge: clear an alarm whose cause is gone, if a reset can clear it",
+        AlarmForce "alarm_force" "level: the drive trips with alarm cause `forced`",
+    }
+}
+
+words! {
+    /// A signal out of the drive.
+    Output {
+        Powered "powered" "the drive has supply; as long as it can answer at all, it has",
+        Ready "ready" "initialised and no alarm: an enable would be accepted",
+        Enabled "enabled" "power stage on",
+        Alarm "alarm" "an alarm stands",
+        BrakeOpen "brake_open" "the holding brake is released; follows `enabled`",
+    }
+}
+
+/// A set of input signals.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inputs(u64);
+
+impl Inputs {
+    /// Is `signal` active?
+    pub fn has(self, signal: Input) -> bool {
+        self.0 & (1 << signal as u8) != 0
+    }
+
+    /// Makes `signal` active.
+    pub fn insert(&mut self, signal: Input) {
+        self.0 |= 1 << signal as u8;
+    }
+
+    /// Signals active here and not in `before`.
+    #[must_use]
+    pub fn risen_since(self, before: Self) -> Self {
+        Self(self.0 & !before.0)
+    }
+}
+
+/// A set of output signals.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outputs(u64);
+
+impl Outputs {
+    /// Is `signal` active?
+    pub fn has(self, signal: Output) -> bool {
+        self.0 & (1 << signal as u8) != 0
+    }
+
+    /// Makes `signal` active if `active`.
+    #[must_use]
+    pub fn with(self, signal: Output, active: bool) -> Self {
+        Self(self.0 | u64::from(active) << signal as u8)
+    }
+}
