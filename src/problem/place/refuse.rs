@@ -1,0 +1,121 @@
+//! What is refused although it is YAML, in words.
+//!
+//! Not here: a text that is no YAML at all (see [`syntax`](super::syntax)).
+
+use super::key::Key;
+use super::{Mark, Path, Problem};
+use std::collections::BTreeMap;
+
+/// Levels of maps and lists that a file may have.
+pub(super) const MAX_DEPTH: usize = 64;
+
+/// Line and spelling of the keys of one map so far, by name.
+pub(super) type Seen = BTreeMap<String, (usize, String)>;
+
+/// An anchor or an alias: the reader would follow it, and paths could not tell its two places
+/// apart.
+pub(super) fn anchor(path: Path, mark: Mark) -> Problem {
+    let advice = "write the value out; a text that begins with `&` or `*` needs quotes";
+    let problem = Problem::value(path, "anchors and aliases are not supported").advise(advice);
+    Problem { mark: Some(mark), ..problem }
+}
+
+/// The second of several documents.
+pub(super) fn document(mark: Mark) -> Problem {
+    let what = "one document only, and here a second begins";
+    Problem { mark: Some(mark), ..Problem::value(Path::root(), what) }
+}
+
+/// A map or list one level too deep.
+pub(super) fn depth(path: Path, mark: Mark) -> Problem {
+    let what = format!("nested deeper than {MAX_DEPTH} levels");
+    Problem { mark: Some(mark), ..Problem::value(path, what) }
+}
+
+/// A key of the map at `path` that is there already or that can't be one; `None` for a good one.
+pub(super) fn key(key: &Key, path: &Path, mark: Mark, seen: &mut Seen) -> Option<Problem> {
+    let problem = match key {
+        Key::Collection => Problem::value(path.clone(), "a key must be a word or a number"),
+        Key::Scalar { name, written } => {
+            let Some((line, first)) = seen.get(name) else {
+                seen.insert(name.clone(), (mark.line, written.clone()));
+                return None;
+            };
+            let spelling = match first == written {
+                true => String::new(),
+                false => format!(" as `{first}`"),
+            };
+            Problem::key(path.key(name), format!("key `{written}` is there twice"))
+                .advise(format!("the first is in line {line}{spelling}"))
+        }
+    };
+    Some(Problem { mark: Some(mark), ..problem })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{At, Places};
+    use super::*;
+
+    /// `line:column+length problem`, one a line.
+    fn problems(text: &str) -> String {
+        let show = |p: &Problem| {
+            let Mark { line, column, length } = p.mark.unwrap();
+            format!("{line}:{column}+{length} {p}\n")
+        };
+        Places::parse(text).1.iter().map(show).collect()
+    }
+
+    #[test]
+    fn equal_keys() {
+        #[rustfmt::skip]
+        let table = [
+            ("a: {b: 1, 'b': 2}\nc: 1\na: 3\n",
+             "1:11+3 a.b: key `b` is there twice (the first is in line 1)\n\
+              3:1+1 a: key `a` is there twice (the first is in line 1)\n"),
+            ("- {17: x, 中: y, 0x11: z}",
+             "1:17+4 [0][17]: key `0x11` is there twice (the first is in line 1 as `17`)\n"),
+            ("- a: 1\n- a: 1\n", ""),
+            ("{a: a, b: a}", ""),
+            ("021: x\n17: y\n21: z\n", ""),
+            ("P1: {6.10: x, 6.1: y}",
+             "1:15+3 P1[6.1]: key `6.1` is there twice (the first is in line 1 as `6.10`)\n"),
+            ("? [a, b]\n: c\n", "1:3+6 a key must be a word or a number\n"),
+        ];
+        for (text, want) in table {
+            assert_eq!(problems(text), want, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_refused() {
+        const ANCHORS: &str = "anchors and aliases are not supported (write the value out; \
+                               a text that begins with `&` or `*` needs quotes)\n";
+        for (text, want) in [
+            ("a: &x 1\nb: *x\n", format!("1:4+4 a: {ANCHORS}2:4+2 b: {ANCHORS}")),
+            ("a: &x\n  b: c\n", format!("1:4+1 a: {ANCHORS}")),
+            ("a: [b, *nowhere]", format!("1:8+1 a[1]: {ANCHORS}")),
+            ("a: b\n---\nc: d\n", "2:1+3 one document only, and here a second begins\n".into()),
+            ("a: b\n...\nc: d\n", "3:1+1 one document only, and here a second begins\n".into()),
+            ("a: b\n---\n*x", "2:1+3 one document only, and here a second begins\n".into()),
+            ("", String::new()),
+        ] {
+            assert_eq!(problems(text), want, "{text:?}");
+        }
+        let (places, _) = Places::parse("a: b\n---\nc: d\n");
+        assert!(places.find(&Path::root().key("a"), At::Key).is_some());
+    }
+
+    #[test]
+    fn depth_has_a_bottom() {
+        let fits = "[".repeat(MAX_DEPTH) + &"]".repeat(MAX_DEPTH);
+        assert_eq!(problems(&fits), "");
+        let stairs: String = (0..999).map(|i| " ".repeat(i) + "a:\n").collect();
+        for text in ["[".repeat(65), "[".repeat(100_000), "- ".repeat(100_000), stairs] {
+            let (places, problems) = Places::parse(&text);
+            assert!(places.root.is_none());
+            assert_eq!(problems.len(), 1);
+            assert_eq!(problems[0].what, "nested deeper than 64 levels");
+        }
+    }
+}
