@@ -1,0 +1,167 @@
+//! Folded rows unfolded: repeats and fills become one list of rows, each with its path in the file.
+
+use super::raw::{KEYS, RawFill, RawRepeat, RawRow, RawSim, RawType};
+use crate::problem::{Path, Problem, section};
+use serde_yaml::Value;
+use std::collections::BTreeMap;
+
+/// A row as it is written, with the key it got and the place it came from.
+pub(super) struct Entry {
+    pub id: String,
+    pub path: Path,
+    pub row: RawRow,
+}
+
+/// Most rows that a model may have: the map's index is 16 bits wide.
+const ROWS_MAX: usize = 60_000;
+
+/// All rows of `file`, in the order of their keys, and the keys of those that can't be read: they are
+/// problems and left out.
+pub(super) fn expand(file: &Value, problems: &mut Vec<Problem>) -> (Vec<Entry>, Vec<String>) {
+    let (mut entries, mut lost) = (Vec::new(), Vec::new());
+    let path = Path::root().key("registers");
+    for (id, path, value) in section::entries(file.get("registers"), &path, problems) {
+        match section::read::<RawRow>(value, &path, KEYS, problems) {
+            Some(row) => entries.push(Entry { id, path, row }),
+            None => lost.push(id),
+        }
+    }
+    let path = Path::root().key("repeats");
+    for (_, path, value) in section::entries(file.get("repeats"), &path, problems) {
+        if let Some(repeat) = section::read::<RawRepeat>(value, &path, KEYS, problems) {
+            unroll(&repeat, &path, &mut entries, problems);
+        }
+    }
+    let path = Path::root().key("fill");
+    for (_, path, value) in section::entries(file.get("fill"), &path, problems) {
+        if let Some(area) = section::read::<RawFill>(value, &path, KEYS, problems) {
+            fill(&area, &path, &mut entries, problems);
+        }
+    }
+    (entries, lost)
+}
+
+fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &mut Vec<Problem>) {
+    let [first, last] = repeat.n;
+    if first > last {
+        let what = format!("copies {first} to {last} are none");
+        return problems.push(Problem::value(path.key("n"), what).advise("first, then last"));
+    }
+    for (key, row) in &repeat.registers {
+        let path = path.key("registers").key(key);
+        if first != last && !key.contains("{n") {
+            let what = "every copy would get the same name";
+            problems.push(Problem::key(path, what).advise("put {n} into the key"));
+            continue;
+        }
+        for n in first..=last {
+            let at = u32::from(row.at) + u32::from(n - first) * u32::from(repeat.stride);
+            let Ok(at) = u16::try_from(at) else {
+                let what = format!("copy {n} would lie at 0x{at:X}, beyond 0xFFFF");
+                problems.push(Problem::value(path.key("at"), what));
+                break;
+            };
+            let mut row = RawRow { at, ..row.clone() };
+            row.name = number(&row.name, n);
+            row.zh = row.zh.map(|zh| number(&zh, n));
+            row.note = row.note.map(|note| number(&note, n));
+            entries.push(Entry { id: number(key, n), path: path.clone(), row });
+        }
+    }
+}
+
+fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Vec<Problem>) {
+    let [first, last] = area.span;
+    if first > last {
+        let what = format!("addresses 0x{first:04X} to 0x{last:04X} are none");
+        return problems.push(Problem::value(path.key("span"), what).advise("first, then last"));
+    }
+    if usize::from(last - first) + entries.len() > ROWS_MAX {
+        return problems.push(Problem::value(path.key("span"), "more rows than a model can have"));
+    }
+    if !area.id.contains("{n") {
+        let what = "every address would get the same name";
+        return problems.push(Problem::value(path.key("id"), what).advise("put {n} into it"));
+    }
+    let mut taken = vec![false; 0x1_0000];
+    for Entry { row, .. } in entries.iter() {
+        taken[usize::from(row.at)] = true;
+        if matches!(row.kind, RawType::U32 | RawType::I32) {
+            taken[usize::from(row.at.saturating_add(1))] = true;
+        }
+    }
+    for at in (first..=last).filter(|at| !taken[usize::from(*at)]) {
+        let row = RawRow {
+            at,
+            kind: RawType::U16,
+            range: None,
+            init: 0,
+            unit: None,
+            access: area.access,
+            applies: Default::default(),
+            lock: None,
+            volatile: false,
+            clears: false,
+            word_order: None,
+            name: number(&area.name, at),
+            zh: area.zh.as_ref().map(|zh| number(zh, at)),
+            see: area.see.clone(),
+            values: BTreeMap::new(),
+            bits: BTreeMap::new(),
+            note: None,
+            assumed: area.assumed.clone(),
+            sim: Some(RawSim::None),
+        };
+        entries.push(Entry { id: number(&area.id, at), path: path.clone(), row });
+    }
+}
+
+/// `text` with its placeholders replaced by `n`: `{n}`, `{n:02}`, `{n:04X}`.
+fn number(text: &str, n: u16) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, tail)) = rest.split_once("{n") {
+        out.push_str(before);
+        let Some((format, after)) = tail.split_once('}') else {
+            out.push_str("{n");
+            rest = tail;
+            continue;
+        };
+        let digits = format.trim_start_matches(':');
+        let (width, hex) = match digits.strip_suffix('X') {
+            Some(width) => (width, true),
+            None => (digits, false),
+        };
+        let width = width.parse().unwrap_or(0).min(8);
+        match hex {
+            true => out.push_str(&format!("{n:0width$X}")),
+            false => out.push_str(&format!("{n:0width$}")),
+        }
+        rest = after;
+    }
+    out + rest
+}
+
+/// Everything of `file` but rows and options, so that it can be read as a whole.
+pub(super) fn without_rows(file: &Value) -> Value {
+    let mut file = file.clone();
+    if let Value::Mapping(map) = &mut file {
+        for key in ["registers", "repeats", "fill"] {
+            map.remove(key);
+        }
+    }
+    file
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn placeholders() {
+        assert_eq!(number("P04.{n:02} of {n}", 3), "P04.03 of 3");
+        assert_eq!(number("x{n:04X}", 0x42A), "x042A");
+        assert_eq!(number("no {number", 1), "no {number");
+        assert_eq!(number("{n:x} {n:99}", 7), "7 00000007");
+    }
+}

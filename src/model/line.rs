@@ -1,0 +1,329 @@
+//! How a drive talks, compiled: functions, limits, word order, the ladder of refusals.
+
+use super::raw::{
+    RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawWordOrder, RawWriteOnlyReads,
+};
+use super::rows::{Compiled, order};
+use super::{Access, RowId};
+use crate::line::Format;
+use crate::problem::{Path, Problem, suggest};
+use crate::wire::LengthCheck;
+use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
+use crate::words::{Cause, Word};
+use std::collections::BTreeMap;
+
+/// How a drive talks.
+#[derive(Debug)]
+pub struct LineRules {
+    /// Function codes that it knows.
+    pub functions: Vec<u8>,
+    /// Where its unit address comes from.
+    pub unit: UnitRule,
+    /// Where its baud rate comes from.
+    pub baud: Coded<u32>,
+    /// Where framing and character format come from.
+    pub format: Coded<WireFormat>,
+    /// Characters of silence that end an RTU frame.
+    pub silence: f64,
+    /// Most registers in one read.
+    pub max_read: u16,
+    /// Most registers in one write.
+    pub max_write: u16,
+    /// Exception code that answers a wrong CRC; `None` is silence.
+    pub crc_error: Option<u8>,
+    /// How far the lengths in a 0x10 request must agree.
+    pub length_check: LengthCheck,
+    /// Which word of a pair stands first.
+    pub word_order: WordOrder,
+    /// May a request touch one word of a pair alone?
+    pub long_access: LongAccess,
+    /// Does reading a write-only row give 0 (or is it refused)?
+    pub write_only_reads_zero: bool,
+    /// Causes and their codes, first one first.
+    pub refuse: Refuse,
+}
+
+/// Where the unit address comes from.
+#[derive(Debug)]
+pub struct UnitRule {
+    /// The row.
+    pub row: RowId,
+    /// Number of DIP switches; 0 without any.
+    pub switches: u8,
+    /// The address when switches and row say 0.
+    pub zero: u8,
+}
+
+/// A row, or one hex digit of it, whose values are codes for something.
+#[derive(Debug)]
+pub struct Coded<T> {
+    /// The row.
+    pub row: RowId,
+    /// Which hex digit from the right; `None` is the whole value.
+    pub digit: Option<u8>,
+    /// Meaning by code.
+    pub codes: BTreeMap<i64, T>,
+}
+
+impl<T: Copy> Coded<T> {
+    /// What `value` of the row stands for, if anything.
+    pub fn decode(&self, value: i64) -> Option<T> {
+        let code = match self.digit {
+            Some(digit) => value >> (4 * digit) & 0xF,
+            None => value,
+        };
+        self.codes.get(&code).copied()
+    }
+}
+
+/// Framing and character format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WireFormat {
+    /// ASCII instead of RTU.
+    pub ascii: bool,
+    /// The shape of a character.
+    pub format: Format,
+}
+
+/// Which word of a pair stands at the lower address.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// The high one.
+    HighFirst,
+    /// The low one.
+    LowFirst,
+}
+
+/// Word order: fixed, or as a row says.
+#[derive(Debug)]
+pub enum WordOrder {
+    /// Always the same.
+    Fixed(Order),
+    /// By value of a row.
+    Row {
+        /// The row.
+        row: RowId,
+        /// Order by value.
+        codes: BTreeMap<i64, Order>,
+    },
+}
+
+/// May a request touch one word of a pair alone?
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LongAccess {
+    /// Yes.
+    Any,
+    /// No.
+    Whole,
+}
+
+/// The ladder of refusals: causes in the order in which they answer, each with its code.
+#[derive(Debug)]
+pub struct Refuse(Vec<(Cause, u8)>);
+
+impl Refuse {
+    /// Causes and codes, first one first.
+    pub fn ladder(&self) -> impl Iterator<Item = (Cause, u8)> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// The code that `cause` answers with, if the ladder has it.
+    pub fn code(&self, cause: Cause) -> Option<u8> {
+        self.0.iter().find(|(it, _)| *it == cause).map(|(_, code)| *code)
+    }
+}
+
+pub(super) fn compile(
+    raw: &RawLine,
+    rows: &Compiled,
+    problems: &mut Vec<Problem>,
+) -> Option<LineRules> {
+    let path = Path::root().key("line");
+    for (i, function) in raw.functions.iter().enumerate() {
+        if ![READ, WRITE_ONE, WRITE_MANY].contains(function) {
+            let what = format!("function 0x{function:02X} is not one that can be emulated");
+            let path = path.key("functions").index(i);
+            problems.push(Problem::value(path, what).advise("0x03, 0x06 and 0x10 are"));
+        }
+    }
+    within(raw.max_read, 1..=125, &path.key("max_read"), problems);
+    within(raw.max_write, 1..=123, &path.key("max_write"), problems);
+    if !(1.5..=100.0).contains(&raw.silence) {
+        let what = format!("{} characters of silence are not between 1.5 and 100", raw.silence);
+        problems.push(Problem::value(path.key("silence"), what));
+    }
+    if raw.crc_error.is_some_and(|code| code == 0 || code > 0x7F) {
+        let what = "an exception code lies between 0x01 and 0x7F";
+        problems.push(Problem::value(path.key("crc_error"), what).advise("null is silence"));
+    }
+    let unit_path = path.key("unit");
+    if raw.unit.switches.is_some_and(|count| !(1..=8).contains(&count)) {
+        let what = "there are 1 to 8 address switches, or none";
+        problems.push(Problem::value(unit_path.key("switches"), what));
+    }
+    let unit = rows.find(&raw.unit.register, &unit_path.key("register"), problems);
+    let baud_path = path.key("baud");
+    if let Some(code) = raw.baud.codes.iter().find(|(_, baud)| !(50..=4_000_000).contains(*baud)) {
+        let what = format!("{} is no baud rate", code.1);
+        problems.push(Problem::value(baud_path.key("codes").key(code.0), what));
+    }
+    let baud = rows.find(&raw.baud.register, &baud_path.key("register"), problems);
+    digit(raw.baud.digit, &baud_path, problems);
+    let word_order = word_order(&raw.word_order, rows, &path.key("word_order"), problems);
+    let format = format(&raw.format, rows, &path.key("format"), problems);
+    let refuse = refuse(raw, rows, &path.key("refuse"), problems);
+    let unit =
+        UnitRule { row: unit?, switches: raw.unit.switches.unwrap_or(0), zero: raw.unit.zero };
+    Some(LineRules {
+        functions: raw.functions.clone(),
+        unit,
+        baud: Coded { row: baud?, digit: raw.baud.digit, codes: raw.baud.codes.clone() },
+        format: format?,
+        silence: raw.silence,
+        max_read: raw.max_read,
+        max_write: raw.max_write,
+        crc_error: raw.crc_error,
+        length_check: match raw.length_check {
+            RawLengthCheck::Strict => LengthCheck::Strict,
+            RawLengthCheck::CountOnly => LengthCheck::CountOnly,
+        },
+        word_order: word_order?,
+        long_access: match raw.long_access {
+            RawLongAccess::Any => LongAccess::Any,
+            RawLongAccess::Whole => LongAccess::Whole,
+        },
+        write_only_reads_zero: raw.write_only_reads == RawWriteOnlyReads::Zero,
+        refuse,
+    })
+}
+
+fn within(
+    value: u16,
+    allowed: std::ops::RangeInclusive<u16>,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) {
+    if !allowed.contains(&value) {
+        let what = format!("{value} is not between {} and {}", allowed.start(), allowed.end());
+        problems.push(Problem::value(path.clone(), what).advise("that is what a frame can hold"));
+    }
+}
+
+fn digit(digit: Option<u8>, path: &Path, problems: &mut Vec<Problem>) {
+    if digit.is_some_and(|digit| digit > 3) {
+        let what = "a word has hex digits 0 to 3, counted from the right";
+        problems.push(Problem::value(path.key("digit"), what));
+    }
+}
+
+fn format(
+    raw: &RawFormat,
+    rows: &Compiled,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> Option<Coded<WireFormat>> {
+    digit(raw.digit, path, problems);
+    let mut codes = BTreeMap::new();
+    for (code, text) in &raw.codes {
+        let (ascii, shape) = match text.strip_prefix("ascii ") {
+            Some(shape) => (true, shape),
+            None => (false, text.as_str()),
+        };
+        let path = path.key("codes").key(code);
+        match shape.parse::<Format>() {
+            Ok(format) if !ascii && format.data_bits == 7 => {
+                let what = "RTU needs 8 data bits";
+                problems.push(Problem::value(path, what).advise("write `ascii 7E1` for ASCII"));
+            }
+            Ok(format) => {
+                codes.insert(*code, WireFormat { ascii, format });
+            }
+            Err(what) => problems.push(Problem::value(path, what)),
+        }
+    }
+    let row = rows.find(&raw.register, &path.key("register"), problems)?;
+    Some(Coded { row, digit: raw.digit, codes })
+}
+
+fn word_order(
+    raw: &RawWordOrder,
+    rows: &Compiled,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> Option<WordOrder> {
+    Some(match raw {
+        RawWordOrder::Fixed(fixed) => WordOrder::Fixed(order(*fixed)),
+        RawWordOrder::Register { register, codes } => {
+            let row = rows.find(register, &path.key("register"), problems)?;
+            for value in codes.keys().filter(|value| !rows.map.row(row).admits(**value)) {
+                let what = format!("{register} never holds {value}");
+                problems.push(Problem::key(path.key("codes").key(value), what));
+            }
+            let codes = codes.iter().map(|(value, raw)| (*value, order(*raw))).collect();
+            WordOrder::Row { row, codes }
+        }
+    })
+}
+
+fn refuse(raw: &RawLine, rows: &Compiled, path: &Path, problems: &mut Vec<Problem>) -> Refuse {
+    let mut ladder: Vec<(Cause, u8)> = Vec::new();
+    let mut meant: Vec<Cause> = Vec::new();
+    for (i, rung) in raw.refuse.iter().enumerate() {
+        let path = path.index(i);
+        if rung.len() != 1 {
+            let what = "one cause a rung, since their order matters";
+            problems.push(Problem::value(path.clone(), what).advise("- {function: 0x01}"));
+        }
+        for (name, code) in rung {
+            let path = path.key(name);
+            let Some(cause) = Cause::parse(name) else {
+                let causes = || Cause::ALL.iter().map(|cause| cause.name());
+                meant.extend(suggest::nearest(name, causes()).and_then(Cause::parse));
+                let advice = suggest::did_you_mean(name, causes());
+                let what = format!("no cause of refusal `{name}`");
+                problems.push(Problem::key(path, what).advise_if(advice));
+                continue;
+            };
+            if *code == 0 || *code > 0x7F {
+                let what = "an exception code lies between 0x01 and 0x7F";
+                problems.push(Problem::value(path.clone(), what));
+            }
+            if ladder.iter().any(|(it, _)| *it == cause) {
+                problems.push(Problem::key(path, "this cause has a rung above"));
+                continue;
+            }
+            ladder.push((cause, *code));
+        }
+    }
+    let listed: Vec<Cause> = ladder.iter().map(|(cause, _)| *cause).chain(meant).collect();
+    for cause in raisable(raw, rows).into_iter().filter(|cause| !listed.contains(cause)) {
+        let what = format!("the drive can refuse for `{}`, but no rung answers it", cause.name());
+        let advice =
+            format!("add `- {{{}: CODE}}` where it belongs: {}", cause.name(), cause.about());
+        problems.push(Problem::key(path.clone(), what).advise(advice));
+    }
+    Refuse(ladder)
+}
+
+/// The causes that a request can meet on this model.
+fn raisable(raw: &RawLine, rows: &Compiled) -> Vec<Cause> {
+    let any = |test: fn(&super::Row) -> bool| rows.map.rows().any(|(_, row)| test(row));
+    let mut causes = vec![Cause::Function, Cause::Length, Cause::Quantity, Cause::Address];
+    if raw.long_access == RawLongAccess::Whole && any(|row| row.kind.words() == 2) {
+        causes.push(Cause::SplitLong);
+    }
+    if any(|row| row.access == Access::Read) {
+        causes.push(Cause::ReadOnly);
+    }
+    if raw.write_only_reads == RawWriteOnlyReads::Refused && any(|row| row.access == Access::Write)
+    {
+        causes.push(Cause::WriteOnly);
+    }
+    if any(|row| row.access != Access::Read && row.spans != [row.kind.limits()]) {
+        causes.push(Cause::Range);
+    }
+    if any(|row| row.locked_while_enabled) {
+        causes.push(Cause::State);
+    }
+    causes
+}

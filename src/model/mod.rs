@@ -1,0 +1,72 @@
+//! A model: what the manual says about one drive, checked and resolved.
+//!
+//! Three stages, three shapes. [`raw`] mirrors the file. [`load`](fn@load) lays the chosen options over
+//! it, expands what is folded and checks every rule, all problems at once. [`Model`] is the result: immutable,
+//! shared by all drives of its kind, with nothing left to look up by string at run time. No file system
+//! here, and no running state.
+
+pub mod builtin;
+mod expand;
+mod line;
+mod load;
+mod options;
+pub mod raw;
+mod row;
+mod rows;
+mod wiring;
+
+pub use crate::words::RowId;
+pub use line::{Coded, LineRules, LongAccess, Order, Refuse, UnitRule, WireFormat, WordOrder};
+pub use load::{Choices, check, load};
+pub use options::OptionInfo;
+pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
+pub use wiring::{
+    Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shown, Shows,
+    Terminals, Wiring,
+};
+
+/// One drive of one vendor, as data.
+#[derive(Debug)]
+pub struct Model {
+    /// The maker.
+    pub vendor: String,
+    /// The name to ask for it by.
+    pub name: String,
+    /// One line about it.
+    pub about: String,
+    /// Product names that it stands for.
+    pub products: Vec<String>,
+    /// The manual: title and revision.
+    pub manual: String,
+    /// Its options and what was chosen.
+    pub options: Vec<OptionInfo>,
+    /// How it talks.
+    pub line: LineRules,
+    /// Its registers.
+    pub map: Map,
+    /// The manual's names of its stations, at least one; and start values that differ from the rows'.
+    pub stations: Vec<Station>,
+    /// Which row, bit and terminal carries what.
+    pub wiring: Wiring,
+}
+
+/// One station of a device: what answers to one unit address.
+#[derive(Debug)]
+pub struct Station {
+    /// The manual's name of it, empty where a device has only one.
+    pub name: String,
+    /// Start values that differ from the rows' own.
+    pub init: Vec<(RowId, u32)>,
+}
+
+impl Model {
+    /// The row that a newcomer would read first: where the axis stands, or else any row that may be read.
+    pub fn showcase(&self) -> Option<&Row> {
+        let position = Shows::Quantity(crate::words::Quantity::PositionActual);
+        let shows = |id: RowId| self.wiring.shows(id) == Some(&position);
+        let found = self.map.rows().find(|(id, _)| shows(*id));
+        found
+            .or_else(|| self.map.rows().find(|(_, row)| row.access != Access::Write))
+            .map(|(_, row)| row)
+    }
+}

@@ -1,0 +1,159 @@
+//! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+#[cfg(feature = "cli")]
+use schemars::JsonSchema;
+
+/// Where signals come from and where they show.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawSignals {
+    /// Signals into the drive.
+    pub inputs: RawInputs,
+    /// Signals out of the drive.
+    pub outputs: RawOutputs,
+}
+
+/// Sources of input signals; a signal is active while any source of it is.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawInputs {
+    /// Function number -> input signal; used by `terminals` and `words`.
+    pub codes: BTreeMap<u16, String>,
+    /// Physical input terminals.
+    pub terminals: Option<RawTerminals>,
+    /// Words in which bit n of word w stands for function number 16 w + n.
+    pub words: Option<RawInputWords>,
+    /// Rows whose bits are signals: row -> bit -> signal.
+    pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
+    pub commands: BTreeMap<String, BTreeMap<i64, String>>,
+}
+
+/// Where output signals show.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawOutputs {
+    /// Function number -> output signal, or `not` and a signal; used by `terminals` and `words`.
+    pub codes: BTreeMap<u16, String>,
+    /// Physical output terminals.
+    pub terminals: Option<RawTerminals>,
+    /// Words in which bit n of word w shows function number 16 w + n.
+    pub words: Option<RawOutputWords>,
+    /// Rows whose bits show signals: row -> bit -> signal, or `not` and a signal.
+    pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+}
+
+/// Physical terminals with assignable functions.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawTerminals {
+    /// What a terminal's name begins with (`DI`); its number follows.
+    pub prefix: String,
+    /// Number of the first terminal.
+    pub first: u8,
+    /// The rows that hold the terminals' function numbers, in order of the terminals.
+    pub functions: Vec<String>,
+    /// A row whose bit i makes terminal i normally closed: active without a signal.
+    pub normally_closed: Option<String>,
+    /// The row that monitors the terminals, bit i for terminal i.
+    pub monitor: Option<RawMonitor>,
+}
+
+/// A row that monitors terminals.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawMonitor {
+    /// The row.
+    pub register: String,
+    /// What a bit shows.
+    pub shows: RawShows,
+}
+
+/// What a bit of a terminal monitor shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawShows {
+    /// 1: the terminal carries a signal.
+    Signal,
+    /// 1: the terminal carries no signal.
+    NoSignal,
+    /// 1: the terminal is active, that is, a signal where normally open, none where normally closed.
+    Active,
+}
+
+/// Input words that a master writes in place of terminals.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawInputWords {
+    /// The rows, in order.
+    pub registers: Vec<String>,
+    /// Rows with one enable bit for each bit of the words; default: all enabled.
+    #[serde(default)]
+    pub enabled_by: Vec<String>,
+    /// Function number -> position (16 times the word plus the bit), where it is not the number itself.
+    #[serde(default)]
+    pub positions: BTreeMap<u16, u16>,
+    /// How long one write of a word holds; after that the word returns to 0. Default: for ever.
+    pub hold: Option<RawHold>,
+}
+
+/// How long one write of an input word holds.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawHold {
+    /// The row with the time, in its unit.
+    pub register: String,
+    /// The time that 0 stands for (`500ms`); default: for ever.
+    pub zero: Option<String>,
+}
+
+/// Output words that a master reads in place of terminals.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawOutputWords {
+    /// The rows, in order.
+    pub registers: Vec<String>,
+    /// Rows with one enable bit for each bit of the words; default: all enabled.
+    #[serde(default)]
+    pub enabled_by: Vec<String>,
+    /// Function number -> position (16 times the word plus the bit), where it is not the number itself.
+    #[serde(default)]
+    pub positions: BTreeMap<u16, u16>,
+}
+
+/// When the drive is ready and what it does at power-on.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawServo {
+    /// Time from power-on until the drive is ready (`1s`); default 0.
+    pub ready_after: Option<String>,
+    /// Is the power stage on from the start, without a signal? default no.
+    pub enabled_at_power_on: bool,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// An alarm that the drive can raise.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawAlarm {
+    /// The vendor's number, as `alarm.code` shows it.
+    pub code: u16,
+    /// Does a reset clear it? Otherwise only a power cycle does. Default yes.
+    #[serde(default = "yes")]
+    pub resettable: bool,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+fn yes() -> bool {
+    true
+}

@@ -1,0 +1,321 @@
+//! Compiled rows and the map that finds them by address.
+
+use crate::units::Unit;
+use crate::words::RowId;
+use std::collections::BTreeMap;
+
+/// One register, or one register pair.
+#[derive(Debug)]
+pub struct Row {
+    /// The manual's code, or our own word for it in small letters.
+    pub id: String,
+    /// Address of its first word.
+    pub at: u16,
+    /// Width and sign.
+    pub kind: Kind,
+    /// Values that may be written, in spans.
+    pub spans: Vec<(i64, i64)>,
+    /// Value as it leaves the factory.
+    pub init: u32,
+    /// Unit of the value.
+    pub unit: Unit,
+    /// The unit as the file says it, empty without one.
+    pub unit_text: String,
+    /// What a master may do.
+    pub access: Access,
+    /// When a new value takes effect.
+    pub applies: Applies,
+    /// Refuses writes while the power stage is on.
+    pub locked_while_enabled: bool,
+    /// Never kept over power-off.
+    pub volatile: bool,
+    /// Returns to 0 once it has acted.
+    pub clears: bool,
+    /// Word order of its own.
+    pub order: Option<super::Order>,
+    /// English name.
+    pub name: String,
+    /// Name as printed.
+    pub zh: String,
+    /// Section of the manual.
+    pub see: String,
+    /// What single values mean.
+    pub values: BTreeMap<i64, String>,
+    /// What single bits mean.
+    pub bits: BTreeMap<u8, String>,
+    /// Remark.
+    pub note: String,
+    /// What was assumed, empty if nothing was.
+    pub assumed: String,
+    /// Stored and read back, and nothing else.
+    pub inert: bool,
+}
+
+/// Width and sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// One word, unsigned.
+    U16,
+    /// One word, signed.
+    I16,
+    /// Two words, unsigned.
+    U32,
+    /// Two words, signed.
+    I32,
+}
+
+/// What a master may do with a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// Read only.
+    Read,
+    /// Write only.
+    Write,
+    /// Both.
+    Both,
+}
+
+/// When a written value takes effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Applies {
+    /// At once.
+    Now,
+    /// When the axis stands still.
+    AtStop,
+    /// At the next power-on.
+    PowerOn,
+}
+
+/// Where a written value goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layer {
+    /// In force only.
+    Ram,
+    /// In force, and kept over power-off.
+    RamAndStore,
+}
+
+/// The registers of a model by address.
+#[derive(Debug, Default)]
+pub struct Map {
+    rows: Vec<Row>,
+    /// Row index + 1 by address, 0 for a hole, up to the highest mapped address.
+    index: Vec<u16>,
+    windows: Vec<Window>,
+    top: u16,
+}
+
+/// An address window onto the rows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Window {
+    /// Its name in the file.
+    pub name: String,
+    /// Added to a row's address.
+    pub base: u16,
+    /// First and last row address that it shows.
+    pub span: (u16, u16),
+    /// Where a write goes.
+    pub layer: Layer,
+}
+
+/// What stands at an address.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Located {
+    /// Word `word` of a row, reached through a window that writes to `layer`.
+    Word {
+        /// The row.
+        row: RowId,
+        /// 0, or 1 for the second word of a pair.
+        word: u8,
+        /// Where a write goes.
+        layer: Layer,
+    },
+    /// Nothing, with something mapped above.
+    Hole,
+    /// Nothing, and nothing above.
+    Beyond,
+}
+
+impl Map {
+    /// A map of `rows`, which do not overlap, through `windows`, which do not either.
+    pub(super) fn new(mut rows: Vec<Row>, windows: Vec<Window>) -> Self {
+        rows.sort_by_key(|row| row.at);
+        let last =
+            rows.last().map_or(0, |row| usize::from(row.at) + usize::from(row.kind.words()) - 1);
+        let mut index = vec![0; if rows.is_empty() { 0 } else { last + 1 }];
+        for (i, row) in rows.iter().enumerate() {
+            for word in 0..row.kind.words() {
+                index[usize::from(row.at + word)] = i as u16 + 1;
+            }
+        }
+        let shown_top =
+            |w: &Window| rows.iter().rfind(|r| w.shows(r.at)).map(|r| w.base + r.last());
+        let top = windows.iter().filter_map(shown_top).max().unwrap_or(0);
+        Self { rows, index, windows, top }
+    }
+
+    /// All rows, by address.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = (RowId, &Row)> {
+        self.rows.iter().enumerate().map(|(i, row)| (RowId(i as u16), row))
+    }
+
+    /// The row with that index.
+    pub fn row(&self, id: RowId) -> &Row {
+        &self.rows[usize::from(id.0)]
+    }
+
+    /// How many rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The windows.
+    pub fn windows(&self) -> &[Window] {
+        &self.windows
+    }
+
+    /// What stands at `address`.
+    pub fn locate(&self, address: u16) -> Located {
+        for window in &self.windows {
+            let Some(at) = address.checked_sub(window.base).filter(|at| window.shows(*at)) else {
+                continue;
+            };
+            if let Some(row) = self.index.get(usize::from(at)).and_then(|i| i.checked_sub(1)) {
+                let word = (at - self.rows[usize::from(row)].at) as u8;
+                return Located::Word { row: RowId(row), word, layer: window.layer };
+            }
+        }
+        if address > self.top { Located::Beyond } else { Located::Hole }
+    }
+
+    /// The row called `name`: its id, or its address in hex (`0x0304`, `0304H`) or decimal.
+    pub fn find(&self, name: &str) -> Option<RowId> {
+        if let Some((id, _)) = self.rows().find(|(_, row)| row.id == name) {
+            return Some(id);
+        }
+        match self.locate(parse_address(name)?) {
+            Located::Word { row, .. } => Some(row),
+            Located::Hole | Located::Beyond => None,
+        }
+    }
+}
+
+impl Window {
+    /// Does it show the row address `at`?
+    fn shows(&self, at: u16) -> bool {
+        (self.span.0..=self.span.1).contains(&at)
+    }
+}
+
+impl Row {
+    /// Address of its last word.
+    pub fn last(&self) -> u16 {
+        self.at + (self.kind.words() - 1)
+    }
+
+    /// May a write carry `value`?
+    pub fn admits(&self, value: i64) -> bool {
+        self.spans.iter().any(|(low, high)| (*low..=*high).contains(&value))
+    }
+
+    /// How people call it: the manual's code and name, or the address where the manual has no code.
+    pub fn label(&self) -> String {
+        let own_word = self.id.starts_with(|c: char| c.is_ascii_lowercase());
+        match own_word {
+            true => format!("0x{:04X} {}", self.at, self.name),
+            false => format!("{} {}", self.id, self.name),
+        }
+    }
+
+    /// Its range as people write it: `0..6000`, `-4..-1, 1..14`.
+    pub fn range_text(&self) -> String {
+        span_text(&self.spans)
+    }
+}
+
+/// Spans of values as people write them.
+pub(super) fn span_text(spans: &[(i64, i64)]) -> String {
+    let text = |(low, high): &(i64, i64)| match low == high {
+        true => low.to_string(),
+        false => format!("{low}..{high}"),
+    };
+    spans.iter().map(text).collect::<Vec<_>>().join(", ")
+}
+
+impl Kind {
+    /// Words that it takes.
+    pub fn words(self) -> u16 {
+        match self {
+            Self::U16 | Self::I16 => 1,
+            Self::U32 | Self::I32 => 2,
+        }
+    }
+
+    /// Lowest and highest value.
+    pub fn limits(self) -> (i64, i64) {
+        match self {
+            Self::U16 => (0, u16::MAX.into()),
+            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
+            Self::U32 => (0, u32::MAX.into()),
+            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
+        }
+    }
+
+    /// The number that the bits `raw` stand for.
+    pub fn value(self, raw: u32) -> i64 {
+        match self {
+            Self::U16 => (raw as u16).into(),
+            Self::I16 => (raw as u16 as i16).into(),
+            Self::U32 => raw.into(),
+            Self::I32 => (raw as i32).into(),
+        }
+    }
+
+    /// The bits of `value`, clamped to what fits.
+    pub fn raw(self, value: i64) -> u32 {
+        let (low, high) = self.limits();
+        let bits = value.clamp(low, high) as u32;
+        if self.words() == 1 { bits & 0xFFFF } else { bits }
+    }
+}
+
+/// Reads `0x0304`, `0304H` or `772`.
+pub(crate) fn parse_address(text: &str) -> Option<u16> {
+    let lower = text.to_ascii_lowercase();
+    if let Some(hex) = lower.strip_prefix("0x") {
+        return u16::from_str_radix(hex, 16).ok();
+    }
+    if let Some(hex) = lower.strip_suffix('h') {
+        return u16::from_str_radix(hex, 16).ok();
+    }
+    lower.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_bits() {
+        assert_eq!(Kind::I16.value(0xFFFC), -4);
+        assert_eq!(Kind::I16.raw(-4), 0xFFFC);
+        assert_eq!(Kind::I32.value(0xFFFF_FFF6), -10);
+        assert_eq!(Kind::U16.raw(70_000), 0xFFFF);
+        assert_eq!(Kind::I16.raw(-70_000), 0x8000);
+    }
+
+    #[test]
+    fn addresses_as_people_write_them() {
+        for text in ["0x0304", "0304H", "0304h", "772"] {
+            assert_eq!(parse_address(text), Some(0x0304), "{text}");
+        }
+        for text in ["", "x", "0x10000", "H", "-1"] {
+            assert_eq!(parse_address(text), None, "{text}");
+        }
+    }
+}

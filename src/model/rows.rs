@@ -1,0 +1,274 @@
+//! Compiles rows and windows into a [`Map`], and finds what is wrong with them.
+
+use super::expand::Entry;
+use super::raw::{
+    RawAccess, RawApplies, RawLayer, RawLock, RawOrder, RawRange, RawType, RawWindow,
+};
+use super::row::{Access, Applies, Kind, Layer, Map, Row, Window, span_text};
+use super::{Order, RowId};
+use crate::problem::{Path, Problem, suggest};
+use crate::units::Unit;
+use std::collections::BTreeMap;
+
+/// Rows by address with the path that each came from.
+pub(super) struct Compiled {
+    pub map: Map,
+    pub paths: Vec<Path>,
+    /// Names of rows that were left out, each for a problem of its own.
+    lost: Vec<String>,
+}
+
+impl Compiled {
+    /// The row called `id`, or a problem at `path` with advice.
+    pub fn find(&self, id: &str, path: &Path, problems: &mut Vec<Problem>) -> Option<RowId> {
+        let found = self.map.rows().find(|(_, row)| row.id == id);
+        if let Some((id, _)) = found {
+            return Some(id);
+        }
+        // What is wrong with that row was told.
+        if self.lost.iter().any(|lost| lost == id) {
+            return None;
+        }
+        let ids = self.map.rows().map(|(_, row)| row.id.as_str());
+        let advice = suggest::nearest(id, ids).and_then(|near| {
+            let (_, row) = self.map.rows().find(|(_, row)| row.id == near)?;
+            Some(format!("did you mean {} ({})?", row.id, row.name))
+        });
+        let what = format!("no register `{id}`");
+        problems.push(Problem::value(path.clone(), what).advise_if(advice));
+        None
+    }
+}
+
+pub(super) fn compile(
+    entries: Vec<Entry>,
+    mut lost: Vec<String>,
+    windows: &BTreeMap<String, RawWindow>,
+    problems: &mut Vec<Problem>,
+) -> Compiled {
+    let mut entries = without_overlaps(entries, &mut lost, problems);
+    entries.sort_by_key(|entry| entry.row.at);
+    let paths = entries.iter().map(|entry| entry.path.clone()).collect();
+    let rows = entries.iter().map(|entry| row(entry, problems)).collect();
+    Compiled { map: Map::new(rows, compile_windows(windows, problems)), paths, lost }
+}
+
+/// Leaves out rows whose addresses or names others have taken: one problem each.
+fn without_overlaps(
+    entries: Vec<Entry>,
+    lost: &mut Vec<String>,
+    problems: &mut Vec<Problem>,
+) -> Vec<Entry> {
+    let mut owner: BTreeMap<u16, String> = BTreeMap::new();
+    let mut names: BTreeMap<String, u16> = BTreeMap::new();
+    entries
+        .into_iter()
+        .filter(|Entry { id, path, row }| {
+            let words = kind(row.kind).words();
+            let last = row.at.checked_add(words - 1);
+            let taken =
+                (row.at..=last.unwrap_or(row.at)).find_map(|at| Some((at, owner.get(&at)?)));
+            let clash = match (last, taken) {
+                (None, _) => Some(format!("the pair at 0x{:04X} has no second address", row.at)),
+                (_, Some((at, owner))) => Some(format!("address 0x{at:04X} is taken by {owner}")),
+                _ => None,
+            };
+            if let Some(what) = clash {
+                problems.push(Problem::value(path.key("at"), what));
+                lost.push(id.clone());
+                return false;
+            }
+            if let Some(at) = names.insert(id.clone(), row.at) {
+                let what = format!("the name `{id}` is taken by the row at 0x{at:04X}");
+                problems.push(Problem::key(path.clone(), what));
+                return false;
+            }
+            owner.extend((row.at..=last.unwrap_or(row.at)).map(|at| (at, id.clone())));
+            true
+        })
+        .collect()
+}
+
+fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row {
+    let kind = kind(raw.kind);
+    let spans = spans(&raw.range, kind, path, problems);
+    let in_range = spans.iter().any(|(low, high)| (*low..=*high).contains(&raw.init));
+    let (low, high) = kind.limits();
+    if !(low..=high).contains(&raw.init) {
+        let what = format!("{} does not fit the type, {low}..{high}", raw.init);
+        problems.push(Problem::value(path.key("init"), what));
+    } else if !in_range {
+        let what = format!("init {} lies outside {}", raw.init, span_text(&spans));
+        let advice = match raw.init {
+            0 => "give an init inside it; without one it is 0",
+            _ => "give an init inside it, or widen the range",
+        };
+        problems.push(Problem::value(path.key("init"), what).advise(advice));
+    }
+    let unit = raw.unit.as_deref().map_or(Some(Unit::NONE), Unit::parse);
+    if unit.is_none() {
+        let text = raw.unit.as_deref().unwrap_or_default();
+        let symbols: Vec<_> = Unit::symbols().collect();
+        let symbol = text.rsplit(' ').next().unwrap_or(text);
+        let advice = match Unit::parse(symbol) {
+            Some(_) => "a factor is a number above 0 and a space: `0.1 rpm`".into(),
+            None => suggest::did_you_mean(symbol, Unit::symbols()).unwrap_or_else(|| {
+                format!("known: {}; a factor may stand before it", symbols.join(", "))
+            }),
+        };
+        let what = format!("no unit `{text}`");
+        problems.push(Problem::value(path.key("unit"), what).advise(advice));
+    }
+    reject_keys_without_effect(raw, kind, path, problems);
+    for bit in raw.bits.keys().filter(|bit| u16::from(**bit) >= 16 * kind.words()) {
+        let what = format!("the row has no bit {bit}");
+        problems.push(Problem::key(path.key("bits").key(bit), what));
+    }
+    Row {
+        id: id.clone(),
+        at: raw.at,
+        kind,
+        spans,
+        init: kind.raw(raw.init),
+        unit: unit.unwrap_or(Unit::NONE),
+        unit_text: raw.unit.clone().unwrap_or_default(),
+        access: match raw.access {
+            RawAccess::R => Access::Read,
+            RawAccess::W => Access::Write,
+            RawAccess::Rw => Access::Both,
+        },
+        applies: match raw.applies {
+            RawApplies::Now => Applies::Now,
+            RawApplies::AtStop => Applies::AtStop,
+            RawApplies::PowerOn => Applies::PowerOn,
+        },
+        locked_while_enabled: raw.lock == Some(RawLock::Enabled),
+        volatile: raw.volatile,
+        clears: raw.clears,
+        order: raw.word_order.map(order),
+        name: raw.name.clone(),
+        zh: raw.zh.clone().unwrap_or_default(),
+        see: raw.see.clone(),
+        values: raw.values.clone(),
+        bits: raw.bits.clone(),
+        note: raw.note.clone().unwrap_or_default(),
+        assumed: raw.assumed.clone().unwrap_or_default(),
+        inert: raw.sim.is_some(),
+    }
+}
+
+/// A key that could change nothing on this row is a mistake, not a decoration.
+fn reject_keys_without_effect(
+    raw: &super::raw::RawRow,
+    kind: Kind,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) {
+    let mut reject = |key: &str, why: &str| {
+        let what = format!("`{key}` changes nothing on {why}");
+        problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+    };
+    if raw.access == RawAccess::R {
+        let of_writes =
+            [("lock", raw.lock.is_some()), ("clears", raw.clears), ("volatile", raw.volatile)];
+        for (key, _) in of_writes.into_iter().filter(|(_, set)| *set) {
+            reject(key, "a row that is read only");
+        }
+    }
+    if raw.word_order.is_some() && kind.words() == 1 {
+        reject("word_order", "a row of one word");
+    }
+}
+
+fn spans(
+    range: &Option<RawRange>,
+    kind: Kind,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> Vec<(i64, i64)> {
+    let limits = kind.limits();
+    let path = path.key("range");
+    let pairs: Vec<(Path, [i64; 2])> = match range {
+        None => return vec![limits],
+        Some(RawRange::One(pair)) => vec![(path, *pair)],
+        Some(RawRange::Many(pairs)) => {
+            pairs.iter().enumerate().map(|(i, pair)| (path.index(i), *pair)).collect()
+        }
+    };
+    let mut spans = Vec::new();
+    for (path, [low, high]) in pairs {
+        if low > high {
+            let what = format!("no value lies between {low} and {high}");
+            problems.push(Problem::value(path, what).advise("the lower one comes first"));
+            continue;
+        }
+        if low < limits.0 || high > limits.1 {
+            let what = format!("{low}..{high} does not fit the type, {}..{}", limits.0, limits.1);
+            problems.push(Problem::value(path, what));
+        }
+        spans.push((low, high));
+    }
+    if spans.is_empty() { vec![limits] } else { spans }
+}
+
+fn compile_windows(
+    windows: &BTreeMap<String, RawWindow>,
+    problems: &mut Vec<Problem>,
+) -> Vec<Window> {
+    if windows.is_empty() {
+        let name = "ram".into();
+        return vec![Window { name, base: 0, span: (0, 0xFFFF), layer: Layer::Ram }];
+    }
+    let mut compiled: Vec<Window> = Vec::new();
+    for (name, raw) in windows {
+        let path = Path::root().key("windows").key(name);
+        let [first, last] = raw.span.unwrap_or([0, 0xFFFF - raw.base]);
+        if first > last || last > 0xFFFF - raw.base {
+            let what = format!("from base 0x{:04X} the span reaches beyond 0xFFFF", raw.base);
+            let what = if first > last { "the span holds no address".into() } else { what };
+            problems.push(Problem::value(path.key("span"), what));
+            continue;
+        }
+        let layer = match raw.writes.as_slice() {
+            [RawLayer::Ram] => Layer::Ram,
+            [RawLayer::Ram, RawLayer::Store] | [RawLayer::Store, RawLayer::Ram] => {
+                Layer::RamAndStore
+            }
+            _ => {
+                let what = "a write goes to [ram] or to [ram, store]";
+                problems.push(Problem::value(path.key("writes"), what));
+                continue;
+            }
+        };
+        let window = Window { name: name.clone(), base: raw.base, span: (first, last), layer };
+        let reach = |w: &Window| (w.base + w.span.0)..=(w.base + w.span.1);
+        let clash = compiled.iter().find(|other| {
+            let (mine, theirs) = (reach(&window), reach(other));
+            mine.start() <= theirs.end() && theirs.start() <= mine.end()
+        });
+        if let Some(other) = clash {
+            let what = format!("shows the same addresses as window `{}`", other.name);
+            let advice = "narrow the span of one of them";
+            problems.push(Problem::key(path, what).advise(advice));
+            continue;
+        }
+        compiled.push(window);
+    }
+    compiled
+}
+
+fn kind(raw: RawType) -> Kind {
+    match raw {
+        RawType::U16 => Kind::U16,
+        RawType::I16 => Kind::I16,
+        RawType::U32 => Kind::U32,
+        RawType::I32 => Kind::I32,
+    }
+}
+
+pub(super) fn order(raw: RawOrder) -> Order {
+    match raw {
+        RawOrder::HighWordFirst => Order::HighFirst,
+        RawOrder::LowWordFirst => Order::LowFirst,
+    }
+}

@@ -1,0 +1,194 @@
+//! Wiring, compiled: which row, bit and terminal carries which word.
+
+mod compile;
+mod used;
+
+pub(super) use compile::compile;
+pub(super) use used::check_inert;
+
+use super::RowId;
+use crate::time::Duration;
+use crate::units::Unit;
+use crate::words::{Action, AlarmCause, Input, Output, Quantity};
+
+/// What a model is wired to. Lists are in the order of the file, and short.
+#[derive(Debug, Default)]
+pub struct Wiring {
+    /// Input terminals with the signal that each function number stands for.
+    pub input_terminals: Option<Terminals<Input>>,
+    /// Input words.
+    pub input_words: Option<InputWords>,
+    /// Rows whose bits are input signals.
+    pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
+    /// Rows in which a written value triggers an action.
+    pub commands: Vec<Commands>,
+    /// Output terminals with the signal that each function number shows.
+    pub output_terminals: Option<Terminals<Shown>>,
+    /// What rows show, by row; `None` for a row that holds what was written.
+    pub shows: Vec<Option<Shows>>,
+    /// Output words.
+    pub output_words: Option<OutputWords>,
+    /// What a write to a row sets off, by row.
+    pub reactions: Vec<Reaction>,
+    /// When the drive is ready.
+    pub servo: Servo,
+    /// Alarms by cause.
+    pub alarms: Vec<Alarm>,
+}
+
+/// What a row shows instead of what was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Shows {
+    /// A number that the drive computes.
+    Quantity(Quantity),
+    /// Output signals, bit by bit.
+    Bits(Vec<(u8, Shown)>),
+    /// Word `n` of the output words.
+    OutputWord(u8),
+    /// The input terminals.
+    InputTerminals(Monitor),
+    /// The output terminals.
+    OutputTerminals(Monitor),
+}
+
+/// An output signal, or its opposite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shown {
+    /// The signal.
+    pub signal: Output,
+    /// Show its opposite.
+    pub inverted: bool,
+}
+
+/// What a bit of a terminal monitor shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Monitor {
+    /// 1 with a signal on the terminal.
+    Signal,
+    /// 1 without a signal.
+    NoSignal,
+    /// 1 while active.
+    Active,
+}
+
+/// Terminals with assignable functions. `S` is what a function number stands for.
+#[derive(Debug)]
+pub struct Terminals<S> {
+    /// What their names begin with.
+    pub prefix: String,
+    /// Number of the first.
+    pub first: u8,
+    /// The row with each terminal's function number.
+    pub functions: Vec<RowId>,
+    /// The row whose bits make terminals normally closed.
+    pub normally_closed: Option<RowId>,
+    /// Meaning of function numbers.
+    pub codes: Vec<(u16, S)>,
+}
+
+impl<S: Copy> Terminals<S> {
+    /// The name of terminal `index`, from 0.
+    pub fn name(&self, index: usize) -> String {
+        format!("{}{}", self.prefix, usize::from(self.first) + index)
+    }
+
+    /// What function number `number` stands for.
+    pub fn meaning(&self, number: u32) -> Option<S> {
+        self.codes.iter().find(|(code, _)| u32::from(*code) == number).map(|(_, signal)| *signal)
+    }
+}
+
+/// Input words that a master writes in place of terminals.
+#[derive(Debug)]
+pub struct InputWords {
+    /// The words.
+    pub rows: Vec<RowId>,
+    /// Their enable words, or none.
+    pub enabled_by: Vec<RowId>,
+    /// Position (16 times the word plus the bit) and signal.
+    pub positions: Vec<(u16, Input)>,
+    /// How long a write holds; `None` for ever.
+    pub hold: Option<Hold>,
+}
+
+/// How long one write of an input word holds.
+#[derive(Debug)]
+pub struct Hold {
+    /// The row with the time.
+    pub row: RowId,
+    /// Its unit.
+    pub unit: Unit,
+    /// What 0 stands for; `None` for ever.
+    pub zero: Option<Duration>,
+}
+
+/// Output words that a master reads in place of terminals.
+#[derive(Debug)]
+pub struct OutputWords {
+    /// Their enable words, or none.
+    pub enabled_by: Vec<RowId>,
+    /// Position (16 times the word plus the bit) and signal.
+    pub positions: Vec<(u16, Shown)>,
+}
+
+/// A row in which a written value triggers an action.
+#[derive(Debug)]
+pub struct Commands {
+    /// The row.
+    pub row: RowId,
+    /// Action by value.
+    pub actions: Vec<(i64, Action)>,
+}
+
+/// What a write to a row sets off, apart from changing its value.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Reaction {
+    /// Nothing: whoever needs the value reads it.
+    #[default]
+    None,
+    /// Input signals may have changed.
+    Inputs,
+    /// Input word `n` was refreshed.
+    InputWord(u8),
+    /// Commands, by index.
+    Command(u8),
+    /// The unit address.
+    Unit,
+}
+
+/// When the drive is ready and what it does at power-on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Servo {
+    /// Time from power-on until ready.
+    pub ready_after: Duration,
+    /// Power stage on from the start.
+    pub enabled_at_power_on: bool,
+}
+
+/// An alarm of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Alarm {
+    /// Why.
+    pub cause: AlarmCause,
+    /// The vendor's number.
+    pub code: u16,
+    /// Does a reset clear it?
+    pub resettable: bool,
+}
+
+impl Wiring {
+    /// The alarm for `cause`, if the model has one.
+    pub fn alarm(&self, cause: AlarmCause) -> Option<Alarm> {
+        self.alarms.iter().find(|alarm| alarm.cause == cause).copied()
+    }
+
+    /// What `row` shows, or `None` if it holds what was written.
+    pub fn shows(&self, row: RowId) -> Option<&Shows> {
+        self.shows[usize::from(row.0)].as_ref()
+    }
+
+    /// What a write to `row` sets off.
+    pub fn reaction(&self, row: RowId) -> Reaction {
+        self.reactions[usize::from(row.0)]
+    }
+}

@@ -1,0 +1,416 @@
+//! Resolves the wiring of a file: names to rows, words to roles.
+
+use super::{
+    Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shown, Shows,
+    Terminals, Wiring,
+};
+use crate::model::raw::{RawHold, RawInputs, RawModel, RawOutputs, RawShows, RawTerminals};
+use crate::model::rows::Compiled;
+use crate::model::{Access, RowId};
+use crate::problem::{At, Path, Problem, suggest};
+use crate::time::{Duration, parse_duration};
+use crate::units::{Dimension, Unit};
+use crate::words::{Action, AlarmCause, Input, Output, Quantity, Word};
+use std::collections::BTreeMap;
+
+pub(in crate::model) fn compile(
+    raw: &RawModel,
+    rows: &Compiled,
+    problems: &mut Vec<Problem>,
+) -> Wiring {
+    let len = rows.map.len();
+    let wiring = Wiring {
+        shows: vec![None; len],
+        reactions: vec![Reaction::None; len],
+        ..Wiring::default()
+    };
+    let mut wirer = Wirer { rows, problems, wiring };
+    wirer.quantities(&raw.quantities);
+    let signals = Path::root().key("signals");
+    wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
+    wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
+    let path = Path::root().key("line").key("unit").key("register");
+    if let Some(row) = rows.map.rows().find(|(_, row)| row.id == raw.line.unit.register) {
+        wirer.react(row.0, Reaction::Unit, &path, At::Value);
+    }
+    wirer.servo(raw);
+    wirer.alarms(raw);
+    wirer.wiring
+}
+
+/// What everything below needs: rows to find, a place for problems, the result.
+struct Wirer<'a> {
+    rows: &'a Compiled,
+    problems: &'a mut Vec<Problem>,
+    wiring: Wiring,
+}
+
+impl Wirer<'_> {
+    fn quantities(&mut self, raw: &BTreeMap<String, String>) {
+        let path = Path::root().key("quantities");
+        for (name, register) in raw {
+            let path = path.key(name);
+            let Some(quantity) = self.word_key::<Quantity>(name, "quantity", &path) else {
+                continue;
+            };
+            let Some(row) = self.row(register, &path) else { continue };
+            self.dimension(row, quantity, &path);
+            self.show(row, Shows::Quantity(quantity), &path, At::Value);
+        }
+    }
+
+    fn dimension(&mut self, row: RowId, quantity: Quantity, path: &Path) {
+        let (row, want) = (self.rows.map.row(row), quantity.dimension());
+        if row.unit.dimension == want {
+            return;
+        }
+        let (what, advice) = match want {
+            Dimension::None => ("is a plain number".to_owned(), "take the unit away".to_owned()),
+            _ => {
+                let symbols: Vec<_> = Unit::symbols_of(want).collect();
+                let what = format!("is in {}", symbols.join(" or "));
+                (what, format!("give the row `unit: {}`, or that with a factor", symbols[0]))
+            }
+        };
+        let have = match row.unit_text.as_str() {
+            "" => "has no unit".to_owned(),
+            unit => format!("is in {unit}"),
+        };
+        let what = format!("`{}` {what}, but {} {have}", quantity.name(), row.id);
+        let advice = format!("{advice}, or wire another row");
+        self.problems.push(Problem::value(path.clone(), what).advise(advice));
+    }
+
+    fn inputs(&mut self, raw: &RawInputs, path: &Path) {
+        let codes = self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| {
+            wirer.word::<Input>(name, "input signal", path)
+        });
+        if let Some(raw) = &raw.terminals {
+            let path = path.key("terminals");
+            self.monitor(raw, &path, Shows::InputTerminals);
+            let terminals = self.terminals(raw, &path, codes.clone());
+            for row in terminals.functions.clone().into_iter().chain(terminals.normally_closed) {
+                self.react(row, Reaction::Inputs, &path, At::Key);
+            }
+            self.wiring.input_terminals = Some(terminals);
+        }
+        if let Some(raw) = &raw.words {
+            let path = path.key("words");
+            let rows = self.row_list(&raw.registers, &path.key("registers"));
+            for (i, row) in rows.iter().enumerate() {
+                let path = path.key("registers").index(i);
+                self.writable(*row, &path, At::Value);
+                self.react(*row, Reaction::InputWord(i as u8), &path, At::Value);
+            }
+            let words = raw.registers.len();
+            let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
+            for (i, row) in enabled_by.iter().enumerate() {
+                self.react(*row, Reaction::Inputs, &path.key("enabled_by").index(i), At::Value);
+            }
+            let positions = self.positions(&codes, &raw.positions, words, &path);
+            let hold = raw.hold.as_ref().and_then(|raw| self.hold(raw, &path.key("hold")));
+            self.wiring.input_words = Some(InputWords { rows, enabled_by, positions, hold });
+        }
+        for (register, bits) in &raw.bits {
+            let path = path.key("bits").key(register);
+            let Some(row) = self.row_key(register, &path) else { continue };
+            self.writable(row, &path, At::Key);
+            let mut map = Vec::new();
+            for (bit, name) in bits {
+                let path = path.key(bit);
+                self.bit(*bit, row, &path);
+                map.extend(self.word::<Input>(name, "input signal", &path).map(|it| (*bit, it)));
+            }
+            self.react(row, Reaction::Inputs, &path, At::Key);
+            self.wiring.input_bits.push((row, map));
+        }
+        for (register, values) in &raw.commands {
+            let path = path.key("commands").key(register);
+            let Some(row) = self.row_key(register, &path) else { continue };
+            self.writable(row, &path, At::Key);
+            let mut actions = Vec::new();
+            for (value, name) in values {
+                let path = path.key(value);
+                if !self.rows.map.row(row).admits(*value) {
+                    let what = format!("{register} refuses the value {value}");
+                    self.problems.push(Problem::key(path.clone(), what));
+                }
+                actions.extend(self.word::<Action>(name, "action", &path).map(|it| (*value, it)));
+            }
+            let index = self.wiring.commands.len() as u8;
+            self.react(row, Reaction::Command(index), &path, At::Key);
+            self.wiring.commands.push(Commands { row, actions });
+        }
+    }
+
+    fn outputs(&mut self, raw: &RawOutputs, path: &Path) {
+        let codes =
+            self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| wirer.shown(name, path));
+        if let Some(raw) = &raw.terminals {
+            let path = path.key("terminals");
+            self.monitor(raw, &path, Shows::OutputTerminals);
+            self.wiring.output_terminals = Some(self.terminals(raw, &path, codes.clone()));
+        }
+        if let Some(raw) = &raw.words {
+            let path = path.key("words");
+            let rows = self.row_list(&raw.registers, &path.key("registers"));
+            for (i, row) in rows.iter().enumerate() {
+                let path = path.key("registers").index(i);
+                self.show(*row, Shows::OutputWord(i as u8), &path, At::Value);
+            }
+            let words = raw.registers.len();
+            let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
+            let positions = self.positions(&codes, &raw.positions, words, &path);
+            self.wiring.output_words = Some(OutputWords { enabled_by, positions });
+        }
+        for (register, bits) in &raw.bits {
+            let path = path.key("bits").key(register);
+            let Some(row) = self.row_key(register, &path) else { continue };
+            let mut map = Vec::new();
+            for (bit, name) in bits {
+                let path = path.key(bit);
+                self.bit(*bit, row, &path);
+                map.extend(self.shown(name, &path).map(|it| (*bit, it)));
+            }
+            self.show(row, Shows::Bits(map), &path, At::Key);
+        }
+    }
+
+    fn terminals<S>(
+        &mut self,
+        raw: &RawTerminals,
+        path: &Path,
+        codes: Vec<(u16, S)>,
+    ) -> Terminals<S> {
+        let functions = self.row_list(&raw.functions, &path.key("functions"));
+        if functions.len() > 16 {
+            let what = "a word has room for 16 terminals";
+            self.problems.push(Problem::value(path.key("functions"), what));
+        }
+        let normally_closed = match &raw.normally_closed {
+            Some(register) => self.row(register, &path.key("normally_closed")),
+            None => None,
+        };
+        let (prefix, first) = (raw.prefix.clone(), raw.first);
+        Terminals { prefix, first, functions, normally_closed, codes }
+    }
+
+    fn monitor(&mut self, raw: &RawTerminals, path: &Path, shows: fn(Monitor) -> Shows) {
+        let Some(monitor) = &raw.monitor else { return };
+        let path = path.key("monitor").key("register");
+        let Some(row) = self.row(&monitor.register, &path) else { return };
+        let kind = match monitor.shows {
+            RawShows::Signal => Monitor::Signal,
+            RawShows::NoSignal => Monitor::NoSignal,
+            RawShows::Active => Monitor::Active,
+        };
+        self.show(row, shows(kind), &path, At::Value);
+    }
+
+    fn hold(&mut self, raw: &RawHold, path: &Path) -> Option<Hold> {
+        let row = self.row(&raw.register, &path.key("register"))?;
+        let unit = self.rows.map.row(row).unit;
+        if unit.dimension != Dimension::Time {
+            let what = format!("{} must hold a time", raw.register);
+            let problem = Problem::value(path.key("register"), what);
+            self.problems.push(problem.advise("give the row `unit: s` or `unit: ms`"));
+        }
+        let zero = self.duration(raw.zero.as_deref(), &path.key("zero"));
+        Some(Hold { row, unit, zero })
+    }
+
+    fn servo(&mut self, raw: &RawModel) {
+        let path = Path::root().key("servo").key("ready_after");
+        let ready_after = self.duration(raw.servo.ready_after.as_deref(), &path);
+        self.wiring.servo = Servo {
+            ready_after: ready_after.unwrap_or(Duration::ZERO),
+            enabled_at_power_on: raw.servo.enabled_at_power_on,
+        };
+    }
+
+    fn alarms(&mut self, raw: &RawModel) {
+        for (name, alarm) in &raw.alarms {
+            let path = Path::root().key("alarms").key(name);
+            if alarm.code == 0 {
+                let what = "0 means no alarm";
+                self.problems.push(Problem::value(path.key("code"), what));
+            }
+            let cause = self.word_key::<AlarmCause>(name, "alarm cause", &path);
+            let (code, resettable) = (alarm.code, alarm.resettable);
+            self.wiring.alarms.extend(cause.map(|cause| Alarm { cause, code, resettable }));
+        }
+        let forced = raw.signals.inputs.codes.values().any(|name| name == Input::AlarmForce.name())
+            || raw
+                .signals
+                .inputs
+                .bits
+                .values()
+                .any(|bits| bits.values().any(|name| name == Input::AlarmForce.name()));
+        if forced && self.wiring.alarm(AlarmCause::Forced).is_none() {
+            let what = "input signal `alarm_force` is wired, but alarm `forced` has no number";
+            let path = Path::root().key(if raw.alarms.is_empty() { "signals" } else { "alarms" });
+            self.problems
+                .push(Problem::key(path, what).advise("add `forced: {code: N}` to `alarms`"));
+        }
+    }
+
+    // ------------------------------------------------------------------ words and rows by name
+
+    fn word<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
+        let found = W::parse(name);
+        if found.is_none() {
+            let all = W::ALL.iter().map(|word| word.name());
+            let advice = suggest::did_you_mean(name, all.clone())
+                .unwrap_or_else(|| format!("known: {}", all.collect::<Vec<_>>().join(", ")));
+            let what = format!("no {kind} `{name}`");
+            self.problems.push(Problem::value(path.clone(), what).advise(advice));
+        }
+        found
+    }
+
+    /// The word named by the key that ends `path`.
+    fn word_key<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
+        let before = self.problems.len();
+        let word = self.word(name, kind, path);
+        self.problems[before..].iter_mut().for_each(|problem| problem.at = At::Key);
+        word
+    }
+
+    fn shown(&mut self, text: &str, path: &Path) -> Option<Shown> {
+        let (name, inverted) = match text.strip_prefix("not ") {
+            Some(name) => (name.trim_start(), true),
+            None => (text, false),
+        };
+        let signal = self.word::<Output>(name, "output signal", path)?;
+        Some(Shown { signal, inverted })
+    }
+
+    fn codes<S>(
+        &mut self,
+        raw: &BTreeMap<u16, String>,
+        path: &Path,
+        parse: fn(&mut Self, &str, &Path) -> Option<S>,
+    ) -> Vec<(u16, S)> {
+        let entry = |(code, name): (&u16, &String)| {
+            parse(self, name, &path.key(code)).map(|signal| (*code, signal))
+        };
+        raw.iter().filter_map(entry).collect()
+    }
+
+    fn row(&mut self, id: &str, path: &Path) -> Option<RowId> {
+        self.rows.find(id, path, self.problems)
+    }
+
+    /// The row named by the key that ends `path`.
+    fn row_key(&mut self, id: &str, path: &Path) -> Option<RowId> {
+        let before = self.problems.len();
+        let row = self.rows.find(id, path, self.problems);
+        self.problems[before..].iter_mut().for_each(|problem| problem.at = At::Key);
+        row
+    }
+
+    fn row_list(&mut self, ids: &[String], path: &Path) -> Vec<RowId> {
+        let row = |(i, id): (usize, &String)| self.row(id, &path.index(i));
+        ids.iter().enumerate().filter_map(row).collect()
+    }
+
+    fn enable_words(&mut self, ids: &[String], words: usize, path: &Path) -> Vec<RowId> {
+        let path = path.key("enabled_by");
+        if !ids.is_empty() && ids.len() != words {
+            let what = format!("{} enable words for {words} words", ids.len());
+            self.problems.push(Problem::value(path.clone(), what).advise("one each, or none"));
+        }
+        self.row_list(ids, &path)
+    }
+
+    fn positions<S: Copy>(
+        &mut self,
+        codes: &[(u16, S)],
+        moved: &BTreeMap<u16, u16>,
+        words: usize,
+        path: &Path,
+    ) -> Vec<(u16, S)> {
+        for code in moved.keys().filter(|code| !codes.iter().any(|(it, _)| it == *code)) {
+            let what = format!("function number {code} has no signal in `codes`");
+            self.problems.push(Problem::key(path.key("positions").key(code), what));
+        }
+        let mut positions: Vec<(u16, S)> = Vec::new();
+        for (code, signal) in codes {
+            let position = moved.get(code).copied().unwrap_or(*code);
+            let what = if usize::from(position) >= 16 * words {
+                format!("no word has position {position}, the last is {}", 16 * words - 1)
+            } else if positions.iter().any(|(taken, _)| *taken == position) {
+                format!("position {position} carries another signal already")
+            } else {
+                positions.push((position, *signal));
+                continue;
+            };
+            let problem = match moved.contains_key(code) {
+                true => Problem::value(path.key("positions").key(code), what),
+                false => {
+                    let path = path.parent().unwrap_or_default().key("codes").key(code);
+                    Problem::key(path, what).advise("give it a bit of its own in `words.positions`")
+                }
+            };
+            self.problems.push(problem);
+        }
+        positions
+    }
+
+    // ------------------------------------------------------------------ what a row is used for
+
+    fn show(&mut self, row: RowId, shows: Shows, path: &Path, at: At) {
+        let shown = self.rows.map.row(row);
+        if shown.access != Access::Read {
+            let what =
+                format!("{} shows what the drive computes, so it can't be written", shown.id);
+            let problem = Problem { at, ..Problem::value(path.clone(), what) };
+            self.problems.push(problem.advise("give it `access: r`"));
+        }
+        let slot = &mut self.wiring.shows[usize::from(row.0)];
+        if slot.is_some() {
+            let what = format!("{} shows something else already", shown.id);
+            self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
+            return;
+        }
+        *slot = Some(shows);
+    }
+
+    fn react(&mut self, row: RowId, reaction: Reaction, path: &Path, at: At) {
+        let slot = &mut self.wiring.reactions[usize::from(row.0)];
+        if *slot != Reaction::None && *slot != reaction {
+            let what = format!("{} is wired to something else already", self.rows.map.row(row).id);
+            self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
+            return;
+        }
+        *slot = reaction;
+    }
+
+    fn writable(&mut self, row: RowId, path: &Path, at: At) {
+        let row = self.rows.map.row(row);
+        if row.access == Access::Read {
+            let what = format!("{} is read only, so no master can set it", row.id);
+            let problem = Problem { at, ..Problem::value(path.clone(), what) };
+            self.problems.push(problem.advise("give it `access: rw`"));
+        }
+    }
+
+    fn bit(&mut self, bit: u8, row: RowId, path: &Path) {
+        let row = self.rows.map.row(row);
+        if u16::from(bit) >= 16 * row.kind.words() {
+            let what = format!("{} has no bit {bit}", row.id);
+            self.problems.push(Problem::key(path.clone(), what));
+        }
+    }
+
+    fn duration(&mut self, text: Option<&str>, path: &Path) -> Option<Duration> {
+        let text = text?;
+        let duration = parse_duration(text);
+        if duration.is_none() {
+            let what = format!("`{text}` is no time");
+            let advice = "write a number and us, ms, s or min: 500ms";
+            self.problems.push(Problem::value(path.clone(), what).advise(advice));
+        }
+        duration
+    }
+}

@@ -1,0 +1,59 @@
+//! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
+
+use super::{Reaction, Wiring};
+use crate::model::RowId;
+use crate::model::line::{LineRules, WordOrder};
+use crate::model::rows::Compiled;
+use crate::problem::{Path, Problem};
+
+/// One problem for each row (each path, where rows are folded) whose `sim` says the wrong thing.
+pub(in crate::model) fn check_inert(
+    rows: &Compiled,
+    line: &LineRules,
+    wiring: &Wiring,
+    problems: &mut Vec<Problem>,
+) {
+    let used = used(rows.map.len(), line, wiring);
+    let mut told: Vec<&Path> = Vec::new();
+    for ((id, row), path) in rows.map.rows().zip(&rows.paths) {
+        let wired = used[usize::from(id.0)];
+        if wired != row.inert || told.contains(&path) {
+            continue;
+        }
+        told.push(path);
+        problems.push(match wired {
+            true => {
+                let what = format!("{} is wired, so `sim: none` is not true", row.id);
+                Problem::key(path.key("sim"), what).advise("leave it out")
+            }
+            false => {
+                let what = format!("{} is wired to nothing", row.id);
+                Problem::key(path.clone(), what).advise("say so: `sim: none`")
+            }
+        });
+    }
+}
+
+fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
+    let mut used = vec![false; len];
+    let mut mark = |row: RowId| used[usize::from(row.0)] = true;
+    [line.unit.row, line.baud.row, line.format.row].into_iter().for_each(&mut mark);
+    if let WordOrder::Row { row, .. } = line.word_order {
+        mark(row);
+    }
+    for (i, shows) in wiring.shows.iter().enumerate() {
+        if shows.is_some() || wiring.reactions[i] != Reaction::None {
+            mark(RowId(i as u16));
+        }
+    }
+    if let Some(words) = &wiring.input_words {
+        words.hold.iter().for_each(|hold| mark(hold.row));
+    }
+    if let Some(words) = &wiring.output_words {
+        words.enabled_by.iter().copied().for_each(&mut mark);
+    }
+    if let Some(terminals) = &wiring.output_terminals {
+        terminals.functions.iter().copied().chain(terminals.normally_closed).for_each(&mut mark);
+    }
+    used
+}
