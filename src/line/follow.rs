@@ -1,0 +1,70 @@
+//! Traffic between a master and other units: followed so that it is never taken for ours.
+
+use crate::wire::function::{EXCEPTION, READ};
+use crate::wire::{Adu, rtu};
+
+/// A good frame that is not for us.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Foreign<'a> {
+    /// A master's request to another unit.
+    Request(Adu<'a>),
+    /// Another unit's answer.
+    Response(Adu<'a>),
+}
+
+/// Remembers the last foreign request, because only that tells its answer from another request.
+#[derive(Debug, Default)]
+pub struct Follower {
+    pending: Option<Pending>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Pending {
+    unit: u8,
+    function: u8,
+    /// Length of a good answer, where the request fixes it.
+    answer_len: Option<usize>,
+}
+
+impl Follower {
+    /// Length of the foreign frame that begins with `bytes`, as far as can be told by now.
+    pub fn frame_len(&self, bytes: &[u8]) -> Option<usize> {
+        self.answer_len(bytes).or_else(|| rtu::request_len(bytes))
+    }
+
+    /// Names a good frame that is not for us, and remembers it if it is a request.
+    pub fn follow<'a>(&mut self, bytes: &'a [u8], adu: Adu<'a>) -> Foreign<'a> {
+        if self.answer_len(bytes) == Some(bytes.len()) {
+            self.pending = None;
+            return Foreign::Response(adu);
+        }
+        self.pending = Some(Pending {
+            unit: adu.unit,
+            function: adu.function(),
+            answer_len: match bytes {
+                [_, READ, _, _, high, low, _, _] => {
+                    Some(5 + 2 * usize::from(u16::from_be_bytes([*high, *low])))
+                }
+                _ => None,
+            },
+        });
+        Foreign::Request(adu)
+    }
+
+    /// A request to one of ours ends the other conversation.
+    pub fn forget(&mut self) {
+        self.pending = None;
+    }
+
+    /// Length of `bytes` as the answer we wait for, or `None` if they can't be that.
+    fn answer_len(&self, bytes: &[u8]) -> Option<usize> {
+        let pending = self.pending?;
+        let (unit, function) = (*bytes.first()?, *bytes.get(1)?);
+        if unit != pending.unit || function & !EXCEPTION != pending.function {
+            return None;
+        }
+        let len = rtu::response_len(bytes)?;
+        let expected = function & EXCEPTION != 0 || pending.answer_len.is_none_or(|it| it == len);
+        expected.then_some(len)
+    }
+}
