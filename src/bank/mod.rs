@@ -1,0 +1,128 @@
+//! The registers of one station: what a request may do, and what is kept over power-off.
+//!
+//! Decide, then act: [`Bank::plan_read`] and [`Bank::plan_write`] turn a request into a plan or a
+//! refusal and change nothing; [`Bank::commit`] cannot fail. The bank knows rows, layers and locks. It does not
+//! know axes or signals: what the rest of the drive has to say about a write comes in through a [`Gate`].
+
+mod ladder;
+mod plan;
+
+pub use ladder::Causes;
+pub use plan::{ReadPlan, WritePlan};
+
+use crate::model::{Layer, Model, Order, Row, RowId, WordOrder};
+
+/// What the rest of the drive says about locked rows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Gate {
+    /// Power stage on?
+    pub enabled: bool,
+}
+
+/// The values of one station.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Bank {
+    /// In force, by row.
+    ram: Box<[u32]>,
+    /// Back after power-off, by row.
+    store: Box<[u32]>,
+}
+
+impl Bank {
+    /// Values as they leave the factory.
+    pub fn new(model: &Model, station: usize) -> Self {
+        let factory = factory(model, station);
+        Self { ram: factory.clone(), store: factory }
+    }
+
+    /// The value in force.
+    pub fn raw(&self, row: RowId) -> u32 {
+        self.ram[usize::from(row.0)]
+    }
+
+    /// The value in force as a number.
+    pub fn value(&self, model: &Model, row: RowId) -> i64 {
+        model.map.row(row).kind.value(self.raw(row))
+    }
+
+    /// Sets the value in force. For what the drive itself decides; masters go through a plan.
+    pub fn set(&mut self, row: RowId, raw: u32) {
+        self.ram[usize::from(row.0)] = raw;
+    }
+
+    /// Sets the value in force and the one that returns at power-on.
+    pub fn preset(&mut self, row: RowId, raw: u32) {
+        self.set(row, raw);
+        self.store[usize::from(row.0)] = raw;
+    }
+
+    /// Carries out a plan. The drive's own bank made it an instant ago, so there is nothing to fail.
+    pub fn commit(&mut self, model: &Model, plan: &WritePlan) {
+        for (row, raw) in plan.values() {
+            self.set(row, raw);
+            if plan.layer() == Layer::RamAndStore && !model.map.row(row).volatile {
+                self.store[usize::from(row.0)] = raw;
+            }
+        }
+    }
+
+    /// Keeps every value in force, but for what is never kept.
+    pub fn store_all(&mut self, model: &Model) {
+        for (id, row) in model.map.rows() {
+            if !row.volatile {
+                self.store[usize::from(id.0)] = self.raw(id);
+            }
+        }
+    }
+
+    /// Puts every value back as it left the factory, in force and kept.
+    pub fn restore_factory(&mut self, model: &Model, station: usize) {
+        *self = Self::new(model, station);
+    }
+
+    /// Power off and on: kept values return, the others are lost.
+    pub fn power_cycle(&mut self) {
+        self.ram.copy_from_slice(&self.store);
+    }
+
+    /// Which word of `row` stands at the lower address right now.
+    pub fn order(&self, model: &Model, row: &Row) -> Order {
+        match (row.order, &model.line.word_order) {
+            (Some(order), _) | (None, &WordOrder::Fixed(order)) => order,
+            (None, WordOrder::Row { row, codes }) => {
+                codes.get(&self.value(model, *row)).copied().unwrap_or(Order::HighFirst)
+            }
+        }
+    }
+}
+
+fn factory(model: &Model, station: usize) -> Box<[u32]> {
+    let mut values: Box<[u32]> = model.map.rows().map(|(_, row)| row.init).collect();
+    for (row, raw) in model.stations.get(station).map_or(&[][..], |station| &station.init) {
+        values[usize::from(row.0)] = *raw;
+    }
+    values
+}
+
+/// Word `word` (0 or 1, by address) of a value of `row`.
+pub(crate) fn word_of(row: &Row, order: Order, raw: u32, word: u8) -> u16 {
+    if is_high(row, order, word) { (raw >> 16) as u16 } else { raw as u16 }
+}
+
+/// `raw` with its word `word` (by address) replaced.
+pub(crate) fn with_word(row: &Row, order: Order, raw: u32, word: u8, value: u16) -> u32 {
+    match is_high(row, order, word) {
+        true => raw & 0x0000_FFFF | u32::from(value) << 16,
+        false => raw & 0xFFFF_0000 | u32::from(value),
+    }
+}
+
+fn is_high(row: &Row, order: Order, word: u8) -> bool {
+    row.kind.words() == 2 && (order == Order::HighFirst) == (word == 0)
+}
+
+/// The number that the two words of a pair stand for, lower address first.
+pub(crate) fn row_value(row: &Row, order: Order, words: [u16; 2]) -> i64 {
+    let raw = with_word(row, order, 0, 0, words[0]);
+    row.kind.value(with_word(row, order, raw, 1, words[1]))
+}

@@ -1,0 +1,182 @@
+//! Ready, enabled, tripped: whether the power stage is on, and why not.
+//!
+//! The power stage is on while somebody wants it on (a level, or a command that stays), the drive is
+//! initialised and no alarm stands. When an alarm goes, a want that still holds switches it on again.
+
+use crate::event::Change;
+use crate::time::{Duration, Instant};
+use crate::words::AlarmCause;
+
+/// An alarm as a drive raises it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Trip {
+    /// Why.
+    pub cause: AlarmCause,
+    /// The vendor's number.
+    pub code: u16,
+    /// Does a reset clear it?
+    pub resettable: bool,
+}
+
+/// The state of the power stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Servo {
+    /// Still initialising until then.
+    starts_until: Option<Instant>,
+    /// A level that asks for the power stage.
+    wanted: bool,
+    /// A command that asked for it and stays until another takes it back.
+    latched: bool,
+    alarm: Option<Trip>,
+    /// A cause that is still there, so that no reset helps.
+    standing: Option<AlarmCause>,
+    was_enabled: bool,
+}
+
+impl Servo {
+    /// Power comes on at `now`.
+    pub fn power_on(now: Instant, ready_after: Duration, enabled: bool) -> Self {
+        let starts_until = (!ready_after.is_zero()).then(|| now + ready_after);
+        Self {
+            starts_until,
+            wanted: false,
+            latched: enabled,
+            alarm: None,
+            standing: None,
+            was_enabled: false,
+        }
+    }
+
+    /// Could it be enabled?
+    pub fn is_ready(&self) -> bool {
+        self.starts_until.is_none() && self.alarm.is_none()
+    }
+
+    /// Is the power stage on?
+    pub fn is_enabled(&self) -> bool {
+        self.is_ready() && (self.wanted || self.latched)
+    }
+
+    /// The alarm that stands.
+    pub fn alarm(&self) -> Option<Trip> {
+        self.alarm
+    }
+
+    /// When initialising ends.
+    pub fn deadline(&self) -> Option<Instant> {
+        self.starts_until
+    }
+
+    /// Lets time pass up to `now`.
+    pub fn advance(&mut self, now: Instant, tell: &mut impl FnMut(Change)) {
+        if self.starts_until.is_some_and(|at| at <= now) {
+            self.starts_until = None;
+            tell(Change::Ready);
+        }
+        self.settle(tell);
+    }
+
+    /// The level that asks for the power stage.
+    pub fn want(&mut self, wanted: bool, tell: &mut impl FnMut(Change)) {
+        self.wanted = wanted;
+        self.settle(tell);
+    }
+
+    /// A command that asks for the power stage, or takes that back.
+    pub fn latch(&mut self, on: bool, tell: &mut impl FnMut(Change)) {
+        self.latched = on;
+        self.settle(tell);
+    }
+
+    /// Trips. The first alarm stays until it is cleared.
+    pub fn trip(&mut self, trip: Trip, tell: &mut impl FnMut(Change)) {
+        if self.alarm.is_none() {
+            self.alarm = Some(trip);
+            tell(Change::Alarm { cause: trip.cause, code: trip.code });
+        }
+        self.settle(tell);
+    }
+
+    /// A cause that stands (or none): while it does, no reset clears its alarm.
+    pub fn stand(&mut self, standing: Option<AlarmCause>) {
+        self.standing = standing;
+    }
+
+    /// Clears the alarm if it can be cleared.
+    pub fn reset(&mut self, tell: &mut impl FnMut(Change)) {
+        let Some(trip) = self.alarm else { return };
+        if !trip.resettable || self.standing == Some(trip.cause) {
+            tell(Change::AlarmStays { cause: trip.cause });
+            return;
+        }
+        self.alarm = None;
+        tell(Change::AlarmCleared);
+        self.settle(tell);
+    }
+
+    fn settle(&mut self, tell: &mut impl FnMut(Change)) {
+        let enabled = self.is_enabled();
+        if enabled != self.was_enabled {
+            self.was_enabled = enabled;
+            tell(Change::Enabled(enabled));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FORCED: Trip = Trip { cause: AlarmCause::Forced, code: 9, resettable: true };
+
+    fn after(act: impl FnOnce(&mut Servo, &mut dyn FnMut(Change))) -> (Servo, Vec<Change>) {
+        let mut servo = Servo::power_on(Instant::ZERO, Duration::ZERO, false);
+        let mut changes = Vec::new();
+        act(&mut servo, &mut |change| changes.push(change));
+        (servo, changes)
+    }
+
+    #[test]
+    fn not_enabled_before_it_is_ready() {
+        let mut servo = Servo::power_on(Instant::ZERO, Duration::from_secs(1), false);
+        let mut changes = Vec::new();
+        servo.want(true, &mut |change| changes.push(change));
+        assert!(!servo.is_enabled());
+        servo.advance(Instant::from_millis(1000), &mut |change| changes.push(change));
+        assert_eq!(changes, [Change::Ready, Change::Enabled(true)]);
+    }
+
+    #[test]
+    fn a_want_that_still_holds_enables_again_after_a_reset() {
+        let (servo, changes) = after(|servo, mut tell| {
+            servo.want(true, &mut tell);
+            servo.trip(FORCED, &mut tell);
+            servo.reset(&mut tell);
+        });
+        let alarm = Change::Alarm { cause: AlarmCause::Forced, code: 9 };
+        let want = [
+            Change::Enabled(true),
+            alarm,
+            Change::Enabled(false),
+            Change::AlarmCleared,
+            Change::Enabled(true),
+        ];
+        assert_eq!((servo.is_enabled(), changes.as_slice()), (true, &want[..]));
+    }
+
+    #[test]
+    fn no_reset_while_the_cause_stands_or_where_none_helps() {
+        let (servo, _) = after(|servo, mut tell| {
+            servo.stand(Some(AlarmCause::Forced));
+            servo.trip(FORCED, &mut tell);
+            servo.reset(&mut tell);
+        });
+        assert_eq!(servo.alarm(), Some(FORCED));
+        let (servo, changes) = after(|servo, mut tell| {
+            servo.trip(Trip { resettable: false, ..FORCED }, &mut tell);
+            servo.reset(&mut tell);
+        });
+        assert!(servo.alarm().is_some());
+        assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
+    }
+}

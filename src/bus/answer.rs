@@ -1,0 +1,117 @@
+//! From what a link heard to what the drives say: the middle of the road from byte to byte.
+
+use super::{Bus, LinkId, Output};
+use crate::drive::Drive;
+use crate::event::{DriveId, Transaction, What};
+use crate::line::{Foreign, Heard};
+use crate::wire::function::READ;
+use crate::wire::{Adu, BROADCAST, Exception, Frame, Response};
+
+/// What a link heard, detached from its buffer so that drives and links can be touched again.
+enum Taken {
+    Request { unit: u8, pdu: Frame },
+    BadCrc(What),
+    Told(What),
+    Lost(What),
+}
+
+impl Bus {
+    /// Takes everything that `link` has heard by now.
+    pub(super) fn listen(&mut self, link: LinkId) {
+        while let Some(taken) = self.take(link) {
+            match taken {
+                Taken::Request { unit: BROADCAST, pdu } => self.broadcast(pdu),
+                Taken::Request { unit, pdu } => self.answer(link, unit, pdu),
+                Taken::BadCrc(what) => self.answer_bad_crc(link, what),
+                Taken::Told(what) => self.emit(what),
+                Taken::Lost(what) => {
+                    self.emit(what);
+                    self.outputs.push_back(Output::Close(link));
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, link: LinkId) -> Option<Taken> {
+        let it = self.links.get_mut(&link)?;
+        let sole = it.sole && self.drives.len() == 1;
+        Some(match it.line.next(self.now, &self.units)? {
+            Heard::Request(adu) => request(adu),
+            // 255 on TCP: the only drive there is.
+            Heard::Foreign(Foreign::Request(adu)) if sole && adu.unit == 0xFF => request(adu),
+            Heard::Foreign(foreign) => Taken::Told(told(foreign)),
+            Heard::BadCrc { bytes, crc } => {
+                Taken::BadCrc(What::BadCrc { frame: Frame::from_slice(bytes), crc, answered: None })
+            }
+            Heard::BadAscii { bytes, why } => {
+                Taken::Told(What::BadAscii { characters: Frame::from_slice(bytes), why })
+            }
+            Heard::Noise { bytes, len, why } => {
+                Taken::Told(What::Noise { head: Frame::from_slice(bytes), len, why })
+            }
+            Heard::Lost(why) => Taken::Lost(What::Lost(why)),
+        })
+    }
+
+    fn answer(&mut self, link: LinkId, unit: u8, request: Frame) {
+        let addressed = self.by_unit[usize::from(unit)];
+        let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
+        let now = self.now;
+        let (answer, refusal) = match self.drives[usize::from(id.0)].request(now, &request) {
+            Ok(response) => (response.encode(), None),
+            Err(refusal) => {
+                let exception = Drive::exception(&request, refusal);
+                (Response::Exception(exception).encode(), Some(refusal))
+            }
+        };
+        self.transmit(link, unit, &answer);
+        self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
+        self.after_drive(id);
+    }
+
+    /// Every drive executes, none answers (serial line, 2.1).
+    fn broadcast(&mut self, request: Frame) {
+        if request.first() == Some(&READ) {
+            return self.emit(What::BroadcastRead { request });
+        }
+        for i in 0..self.drives.len() {
+            let drive = DriveId(i as u16);
+            let refusal = self.drives[i].request(self.now, &request).err();
+            self.emit(What::Broadcast { drive, request, refusal });
+            self.after_drive(drive);
+        }
+    }
+
+    /// Some drives answer a broken frame, if the address in it is theirs.
+    fn answer_bad_crc(&mut self, link: LinkId, what: What) {
+        let What::BadCrc { frame, crc, .. } = what else { return };
+        let named = frame.first().and_then(|unit| self.by_unit[usize::from(*unit)]);
+        let answered = named.and_then(|id| {
+            let code = self.drive(id).model().line.crc_error?;
+            Some((id, code))
+        });
+        if let (Some((_, code)), [unit, function, ..]) = (answered, &*frame) {
+            let exception = Exception { function: *function & 0x7F, code };
+            self.transmit(link, *unit, &Response::Exception(exception).encode());
+        }
+        self.emit(What::BadCrc { frame, crc, answered });
+    }
+
+    fn transmit(&mut self, link: LinkId, unit: u8, pdu: &[u8]) {
+        let Some(it) = self.links.get(&link) else { return };
+        let frame = it.line.frame(unit, pdu);
+        self.outputs.push_back(Output::Transmit { link, frame });
+    }
+}
+
+fn request(adu: Adu<'_>) -> Taken {
+    Taken::Request { unit: adu.unit, pdu: Frame::from_slice(adu.pdu) }
+}
+
+fn told(foreign: Foreign<'_>) -> What {
+    let (adu, answer) = match foreign {
+        Foreign::Request(adu) => (adu, false),
+        Foreign::Response(adu) => (adu, true),
+    };
+    What::Foreign { unit: adu.unit, pdu: Frame::from_slice(adu.pdu), answer }
+}

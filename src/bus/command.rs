@@ -1,0 +1,92 @@
+//! What can be done to drives from outside their line: by a test, a bench, later a control port.
+
+use super::Bus;
+use crate::event::DriveId;
+use crate::words::{AlarmCause, Word};
+use thiserror::Error;
+
+/// Something to do to a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// Put a signal on an input terminal, or take it off.
+    Terminal {
+        /// Which drive.
+        drive: DriveId,
+        /// Which terminal, from 0.
+        index: u8,
+        /// Carries a signal?
+        signal: bool,
+    },
+    /// Trip with an alarm.
+    Raise {
+        /// Which drive.
+        drive: DriveId,
+        /// Why.
+        cause: AlarmCause,
+    },
+    /// Power off and on; all stations of the device with it.
+    PowerCycle {
+        /// Which drive.
+        drive: DriveId,
+    },
+}
+
+/// The answer to a command that was carried out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reply {
+    /// Done.
+    Done,
+}
+
+/// Why a command was not carried out.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum CommandError {
+    /// No such drive.
+    #[error("there is no drive {0} on this line")]
+    NoDrive(u16),
+    /// No such terminal.
+    #[error("the drive has {have} input terminals, no number {got}")]
+    NoTerminal {
+        /// Asked for, from 0.
+        got: u8,
+        /// There are this many.
+        have: usize,
+    },
+    /// The model has no alarm for the cause.
+    #[error("the model has no alarm for `{0}`")]
+    NoAlarm(&'static str),
+}
+
+impl Bus {
+    pub(super) fn carry_out(&mut self, command: Command) -> Result<Reply, CommandError> {
+        let id = match command {
+            Command::Terminal { drive, .. }
+            | Command::Raise { drive, .. }
+            | Command::PowerCycle { drive } => drive,
+        };
+        let now = self.now;
+        let device = self.devices.get(usize::from(id.0)).copied();
+        let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
+        match command {
+            Command::Terminal { index, signal, .. } => {
+                let terminals = drive.model().wiring.input_terminals.as_ref();
+                let have = terminals.map_or(0, |terminals| terminals.functions.len());
+                if usize::from(index) >= have {
+                    return Err(CommandError::NoTerminal { got: index, have });
+                }
+                drive.set_terminal(index, signal);
+            }
+            Command::Raise { cause, .. } => {
+                if !drive.raise(cause) {
+                    return Err(CommandError::NoAlarm(cause.name()));
+                }
+            }
+            Command::PowerCycle { .. } => {
+                let stations = self.drives.iter_mut().zip(&self.devices);
+                let of_device = stations.filter(|(_, it)| Some(**it) == device);
+                of_device.for_each(|(drive, _)| drive.power_cycle(now));
+            }
+        }
+        Ok(Reply::Done)
+    }
+}

@@ -1,0 +1,203 @@
+//! One line with its drives: bytes and time in, bytes and events out. No clock, no socket, no lock.
+//!
+//! Contract: feed one input, drain [`Bus::poll_output`] to `None`, come back at [`Bus::poll_at`] or with the
+//! next input. Deadlines at or before `now` happen before the input that arrives at `now`; equal
+//! deadlines happen in a fixed order, links first, then drives by number.
+//!
+//! A serial line has one link. A TCP port has one for each client, all onto the same drives.
+
+mod agenda;
+mod answer;
+mod command;
+mod output;
+
+pub use command::{Command, CommandError, Reply};
+pub use output::{LinkId, Output, Wake, WakeReason};
+
+use crate::drive::{Drive, Setup};
+use crate::event::{DriveId, Event, What};
+use crate::line::{Framing, Line, Units};
+use crate::model::Model;
+use crate::time::Instant;
+use agenda::Agenda;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+/// Bytes that a line looks at before it is asked what it heard.
+const CHUNK: usize = 256;
+
+/// One line with its drives.
+#[derive(Debug)]
+pub struct Bus {
+    now: Instant,
+    links: BTreeMap<LinkId, Link>,
+    next_link: u32,
+    drives: Vec<Drive>,
+    /// Device that each drive belongs to: the stations of one device share their power.
+    devices: Vec<u16>,
+    units: Units,
+    by_unit: [Option<DriveId>; 256],
+    agenda: Agenda,
+    outputs: VecDeque<Output>,
+}
+
+#[derive(Debug)]
+struct Link {
+    line: Line,
+    /// Modbus TCP lets a client say 255 for "whoever is there" (messaging on TCP/IP, 3.1.3).
+    sole: bool,
+}
+
+impl Bus {
+    /// A line without anything on it.
+    pub fn new() -> Self {
+        Self {
+            now: Instant::ZERO,
+            links: BTreeMap::new(),
+            next_link: 0,
+            drives: Vec::new(),
+            devices: Vec::new(),
+            units: Units::new(),
+            by_unit: [None; 256],
+            agenda: Agenda::default(),
+            outputs: VecDeque::with_capacity(16),
+        }
+    }
+
+    /// Puts one station of a device on the line; `setup` says which. Stations of one `device` share
+    /// their power.
+    pub fn add(&mut self, model: Arc<Model>, setup: &Setup, device: u16) -> DriveId {
+        let id = DriveId(self.drives.len() as u16);
+        self.drives.push(Drive::new(model, setup, self.now));
+        self.devices.push(device);
+        self.readdress();
+        self.after_drive(id);
+        id
+    }
+
+    /// Opens a link onto the line.
+    pub fn open(&mut self, framing: Framing) -> LinkId {
+        let id = LinkId(self.next_link);
+        self.next_link += 1;
+        let sole = framing == Framing::Mbap;
+        self.links.insert(id, Link { line: Line::new(framing), sole });
+        id
+    }
+
+    /// Closes a link. What was half received on it is forgotten.
+    pub fn close(&mut self, link: LinkId) {
+        self.links.remove(&link);
+    }
+
+    /// The drives, in the order in which they were added.
+    pub fn drives(&self) -> impl ExactSizeIterator<Item = (DriveId, &Drive)> {
+        self.drives.iter().enumerate().map(|(i, drive)| (DriveId(i as u16), drive))
+    }
+
+    /// One drive.
+    pub fn drive(&self, id: DriveId) -> &Drive {
+        &self.drives[usize::from(id.0)]
+    }
+
+    /// The drive that answers to `unit`.
+    pub fn find(&self, unit: u8) -> Option<DriveId> {
+        self.by_unit[usize::from(unit)]
+    }
+
+    /// The time up to which everything has happened.
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Takes bytes that arrived on `link` at `now`.
+    pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
+        self.advance_to(now);
+        for chunk in bytes.chunks(CHUNK) {
+            let Some(it) = self.links.get_mut(&link) else { return };
+            it.line.receive(self.now, chunk);
+            self.listen(link);
+        }
+    }
+
+    /// Carries out a command from outside the line at `now`.
+    ///
+    /// # Errors
+    /// If there is no such drive, terminal or alarm; nothing has happened then, but time.
+    pub fn command(&mut self, now: Instant, command: Command) -> Result<Reply, CommandError> {
+        self.advance_to(now);
+        let reply = self.carry_out(command);
+        (0..self.drives.len() as u16).for_each(|i| self.after_drive(DriveId(i)));
+        reply
+    }
+
+    /// Lets time pass up to `now`: whatever is due until then happens, each thing at its own instant.
+    /// Time never runs backwards; an earlier `now` changes nothing.
+    pub fn advance_to(&mut self, now: Instant) {
+        while let Some(wake) = self.poll_at().filter(|wake| wake.at <= now) {
+            self.now = self.now.max(wake.at);
+            match wake.reason {
+                WakeReason::Silence(link) => self.listen(link),
+                WakeReason::Drive(id) => {
+                    self.drives[usize::from(id.0)].advance_to(self.now);
+                    self.after_drive(id);
+                }
+            }
+        }
+        self.now = self.now.max(now);
+    }
+
+    /// The next thing that leaves the bus.
+    pub fn poll_output(&mut self) -> Option<Output> {
+        self.outputs.pop_front()
+    }
+
+    /// When to come back at the latest, and why.
+    pub fn poll_at(&self) -> Option<Wake> {
+        let silence = |(id, link): (&LinkId, &Link)| {
+            let at = link.line.deadline()?;
+            Some(Wake { at, reason: WakeReason::Silence(*id) })
+        };
+        let silences = self.links.iter().filter_map(silence);
+        let drives = self.agenda.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
+        silences.chain(drives).min_by_key(|wake| wake.at)
+    }
+
+    fn emit(&mut self, what: What) {
+        self.outputs.push_back(Output::Event(Event { at: self.now, what }));
+    }
+
+    /// Collects what a drive has to tell and when it wants to be woken.
+    fn after_drive(&mut self, id: DriveId) {
+        let mut moved = false;
+        while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
+            moved |= matches!(
+                change,
+                crate::event::Change::Unit { .. } | crate::event::Change::PoweredOn
+            );
+            let unit = self.drives[usize::from(id.0)].unit();
+            self.emit(What::Drive { drive: id, unit, change });
+        }
+        if moved {
+            self.readdress();
+        }
+        self.agenda.set(id, self.drives[usize::from(id.0)].deadline());
+    }
+
+    /// Finds out again who answers to what. Of two drives with one address the first answers.
+    fn readdress(&mut self) {
+        self.units = Units::new();
+        self.by_unit = [None; 256];
+        for (i, drive) in self.drives.iter().enumerate().rev() {
+            if drive.unit() != crate::wire::BROADCAST {
+                self.units.insert(drive.unit());
+                self.by_unit[usize::from(drive.unit())] = Some(DriveId(i as u16));
+            }
+        }
+    }
+}
+
+impl Default for Bus {
+    fn default() -> Self {
+        Self::new()
+    }
+}

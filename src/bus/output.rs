@@ -1,0 +1,43 @@
+//! What leaves a bus, and when it wants to be woken.
+
+use crate::event::{DriveId, Event};
+use crate::time::Instant;
+use crate::wire::Frame;
+
+/// A link onto a bus: the serial line, or one TCP client.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LinkId(pub(super) u32);
+
+/// What leaves a bus.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// A whole answer, to be sent in one write.
+    Transmit {
+        /// Where to.
+        link: LinkId,
+        /// The bytes.
+        frame: Frame,
+    },
+    /// The link can't be followed any more and should be closed.
+    Close(LinkId),
+    /// Something happened.
+    Event(Event),
+}
+
+/// When a bus wants to be woken at the latest, and why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wake {
+    /// When.
+    pub at: Instant,
+    /// Why.
+    pub reason: WakeReason,
+}
+
+/// Why a bus wants to be woken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WakeReason {
+    /// Silence will end a frame on that link.
+    Silence(LinkId),
+    /// Something will happen in that drive.
+    Drive(DriveId),
+}

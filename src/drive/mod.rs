@@ -1,0 +1,259 @@
+//! One station of a drive: the only place that sees registers and behaviours.
+//!
+//! A request becomes a plan, the plan is committed, and what the written rows are wired to reacts
+//! ([`react`]). What a row shows is computed when somebody looks ([`show`]). It knows no bytes on a line and no
+//! other drive.
+
+mod react;
+mod setup;
+mod show;
+mod signals;
+
+pub use setup::Setup;
+
+use crate::bank::{Bank, Causes, Gate};
+use crate::behaviour::{Hold, Servo, Trip};
+use crate::event::Change;
+use crate::line::Settings;
+use crate::model::{Model, WireFormat};
+use crate::time::Instant;
+use crate::wire::{Exception, Malformed, Request, Response, Span, Words};
+use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Refusal};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// One station of a drive.
+#[derive(Debug)]
+pub struct Drive {
+    model: Arc<Model>,
+    station: usize,
+    /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
+    bank: Bank,
+    servo: Servo,
+    /// Watchdogs of the input words.
+    holds: Vec<Hold>,
+    /// Signals on the input terminals, bit by bit.
+    terminals: u16,
+    inputs: Inputs,
+    switches: u8,
+    unit: u8,
+    position: i64,
+    changes: VecDeque<Change>,
+    read: [u16; 125],
+}
+
+impl Drive {
+    /// A drive of `model` as the bench sets it up, switched on at `now`.
+    pub fn new(model: Arc<Model>, setup: &Setup, now: Instant) -> Self {
+        let mut bank = Bank::new(&model, setup.station);
+        setup.values.iter().for_each(|(row, raw)| bank.preset(*row, *raw));
+        let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
+        let mut drive = Self {
+            servo: Servo::power_on(now, Default::default(), false),
+            holds: vec![Hold::default(); words],
+            model,
+            station: setup.station,
+            bank,
+            terminals: setup.terminals,
+            inputs: Inputs::default(),
+            switches: setup.switches,
+            unit: 0,
+            position: setup.position,
+            changes: VecDeque::with_capacity(8),
+            read: [0; 125],
+        };
+        drive.power_on(now);
+        drive
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Which station of its device, from 0.
+    pub fn station(&self) -> usize {
+        self.station
+    }
+
+    /// The unit address in force.
+    pub fn unit(&self) -> u8 {
+        self.unit
+    }
+
+    /// The values of its registers, for those who look from outside.
+    pub fn bank(&self) -> &Bank {
+        &self.bank
+    }
+
+    /// The serial settings that its parameters ask for, and whether they ask for ASCII. `None` where a
+    /// parameter holds a code that stands for nothing.
+    pub fn settings(&self) -> Option<(Settings, bool)> {
+        let line = &self.model.line;
+        let baud = line.baud.decode(self.bank.value(&self.model, line.baud.row))?;
+        let WireFormat { ascii, format } =
+            line.format.decode(self.bank.value(&self.model, line.format.row))?;
+        Some((Settings { baud, format }, ascii))
+    }
+
+    /// Answers a request that arrived at `now`, or says why not.
+    pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
+        if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
+            return Err(self.refuse(Cause::Function, Detail::Function(*function)));
+        }
+        match Request::parse(pdu, self.model.line.length_check) {
+            Ok(Request::Read(span)) => self.answer_read(span),
+            Ok(Request::WriteOne { address, value }) => {
+                self.write(now, Span::one(address), value)?;
+                Ok(Response::WriteOne { address, value: value.get(0).unwrap_or(0) })
+            }
+            Ok(Request::WriteMany { span, values }) => {
+                self.write(now, span, values)?;
+                Ok(Response::WriteMany(span))
+            }
+            Err(malformed) => Err(self.refuse_malformed(malformed)),
+        }
+    }
+
+    /// The exception that answers a refusal.
+    pub fn exception(pdu: &[u8], refusal: Refusal) -> Exception {
+        Exception { function: pdu.first().copied().unwrap_or(0), code: refusal.code }
+    }
+
+    /// Trips with `cause`, if the model has an alarm for it.
+    ///
+    /// Returns whether it has.
+    pub fn raise(&mut self, cause: AlarmCause) -> bool {
+        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
+        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
+        self.servo.trip(trip, &mut |change| self.changes.push_back(change));
+        true
+    }
+
+    /// Puts a signal on input terminal `index`, or takes it off.
+    pub fn set_terminal(&mut self, index: u8, signal: bool) {
+        let bit = 1 << index;
+        if (self.terminals & bit != 0) != signal {
+            self.terminals ^= bit;
+            self.changes.push_back(Change::Terminal { index, signal });
+            self.gather_inputs();
+        }
+    }
+
+    /// Power off and on.
+    pub fn power_cycle(&mut self, now: Instant) {
+        self.bank.power_cycle();
+        self.power_on(now);
+    }
+
+    /// Lets time pass up to `now`: every deadline until then happens at its own instant.
+    pub fn advance_to(&mut self, now: Instant) {
+        let tell = &mut |change| self.changes.push_back(change);
+        self.servo.advance(now, tell);
+        self.expire_words(now);
+    }
+
+    /// When something will happen by itself.
+    pub fn deadline(&self) -> Option<Instant> {
+        let holds = self.holds.iter().filter_map(Hold::deadline);
+        holds.chain(self.servo.deadline()).min()
+    }
+
+    /// The next change that has not been told yet.
+    pub fn poll_change(&mut self) -> Option<Change> {
+        self.changes.pop_front()
+    }
+
+    fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
+        let plan = self.bank.plan_read(&self.model, span)?;
+        let mut read = self.read;
+        let len = plan.read(&self.bank, &self.model, |row| self.show(row), &mut read);
+        self.read = read;
+        Ok(Response::Read(&self.read[..len]))
+    }
+
+    fn write(&mut self, now: Instant, span: Span, words: Words<'_>) -> Result<(), Refusal> {
+        let gate = Gate { enabled: self.servo.is_enabled() };
+        let plan = self.bank.plan_write(&self.model, span, words, gate)?;
+        self.bank.commit(&self.model, &plan);
+        self.react(now, &plan);
+        Ok(())
+    }
+
+    fn refuse(&self, cause: Cause, detail: Detail) -> Refusal {
+        let mut causes = Causes::default();
+        causes.meet(cause, detail);
+        self.answer_causes(causes)
+    }
+
+    fn refuse_malformed(&self, malformed: Malformed) -> Refusal {
+        let most = self.model.line.max_read;
+        let mut causes = Causes::default();
+        match malformed {
+            Malformed::Function(code) => causes.meet(Cause::Function, Detail::Function(code)),
+            Malformed::Length { got, want } => {
+                causes.meet(Cause::Length, Detail::Length { got, want });
+            }
+            Malformed::NoRegisters => {
+                causes.meet(Cause::Quantity, Detail::Quantity { got: 0, most });
+            }
+            Malformed::Beyond { start, count } => {
+                if count > most {
+                    causes.meet(Cause::Quantity, Detail::Quantity { got: count, most });
+                }
+                causes.meet(Cause::AddressBeyond, Detail::Address(start));
+            }
+        }
+        self.answer_causes(causes)
+    }
+
+    fn answer_causes(&self, causes: Causes) -> Refusal {
+        let refusal = causes.refusal(&self.model.line.refuse);
+        refusal.expect("the model was checked: each cause that it can meet has a rung")
+    }
+
+    fn power_on(&mut self, now: Instant) {
+        let servo = self.model.wiring.servo;
+        self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
+        self.holds.iter_mut().for_each(Hold::stop);
+        self.inputs = Inputs::default();
+        self.unit = self.unit_asked_for();
+        self.changes.push_back(Change::PoweredOn);
+        self.gather_inputs();
+        self.servo.advance(now, &mut |change| self.changes.push_back(change));
+    }
+
+    /// The unit address that switches and parameters ask for.
+    fn unit_asked_for(&self) -> u8 {
+        let rule = &self.model.line.unit;
+        let register = self.bank.value(&self.model, rule.row);
+        match (self.switches, u8::try_from(register).unwrap_or(0)) {
+            (0, 0) => rule.zero,
+            (0, unit) => unit,
+            (switches, _) => switches,
+        }
+    }
+
+    fn act(&mut self, now: Instant, action: Action) {
+        let tell = &mut |change| self.changes.push_back(change);
+        match action {
+            Action::Enable => self.servo.latch(true, tell),
+            Action::Release => self.servo.latch(false, tell),
+            Action::AlarmReset => self.servo.reset(tell),
+            Action::ClearPosition => {
+                self.position = 0;
+                self.changes.push_back(Change::PositionCleared);
+            }
+            Action::StoreAll => {
+                self.bank.store_all(&self.model);
+                self.changes.push_back(Change::Stored);
+            }
+            Action::RestoreFactory => {
+                self.bank.restore_factory(&self.model, self.station);
+                self.changes.push_back(Change::FactoryRestored);
+                self.gather_inputs();
+            }
+            Action::PowerCycle => self.power_cycle(now),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! What a committed write sets off: input words refreshed, commands given, the address changed.
+
+use super::Drive;
+use crate::bank::WritePlan;
+use crate::event::Change;
+use crate::model::{Applies, Reaction};
+use crate::time::{Duration, Instant};
+use crate::words::RowId;
+
+impl Drive {
+    /// Reacts to the rows that `plan` wrote, in order of address. Rows that only hold a value react to
+    /// nothing: whoever needs the value reads it.
+    pub(super) fn react(&mut self, now: Instant, plan: &WritePlan) {
+        let mut inputs = false;
+        for (row, raw) in plan.values() {
+            match self.model.wiring.reaction(row) {
+                Reaction::None => {}
+                Reaction::Inputs => inputs = true,
+                Reaction::InputWord(word) => {
+                    inputs = true;
+                    let time = self.hold_time().filter(|_| raw != 0);
+                    self.holds[usize::from(word)].refresh(now, time);
+                }
+                Reaction::Command(index) => self.command(now, index, row, raw),
+                Reaction::Unit => self.change_unit(row),
+            }
+            if self.model.map.row(row).clears {
+                self.bank.set(row, 0);
+            }
+        }
+        if inputs {
+            self.gather_inputs();
+        }
+    }
+
+    /// Lets input words fall back that were not refreshed in time.
+    pub(super) fn expire_words(&mut self, now: Instant) {
+        let model = self.model.clone();
+        let Some(words) = &model.wiring.input_words else { return };
+        let mut expired = false;
+        for (hold, word) in self.holds.iter_mut().zip(&words.rows) {
+            let (Some(held), Some(rule)) = (hold.expired(now), &words.hold) else { continue };
+            self.bank.set(*word, 0);
+            let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
+            let change = Change::WordExpired { word: *word, hold: rule.row, held_ms };
+            self.changes.push_back(change);
+            expired = true;
+        }
+        if expired {
+            self.gather_inputs();
+        }
+    }
+
+    /// How long a write of an input word holds; `None` for ever.
+    fn hold_time(&self) -> Option<Duration> {
+        let hold = self.model.wiring.input_words.as_ref()?.hold.as_ref()?;
+        match self.bank.value(&self.model, hold.row) {
+            0 => hold.zero,
+            time => hold.unit.duration(time),
+        }
+    }
+
+    fn command(&mut self, now: Instant, index: u8, row: RowId, raw: u32) {
+        let value = self.model.map.row(row).kind.value(raw);
+        let actions = &self.model.wiring.commands[usize::from(index)].actions;
+        let action = actions.iter().find(|(it, _)| *it == value).map(|(_, action)| *action);
+        if let Some(action) = action {
+            self.act(now, action);
+        }
+    }
+
+    fn change_unit(&mut self, row: RowId) {
+        let asked = self.unit_asked_for();
+        if self.model.map.row(row).applies == Applies::PowerOn || asked == self.unit {
+            return;
+        }
+        let from = std::mem::replace(&mut self.unit, asked);
+        self.changes.push_back(Change::Unit { from, to: asked });
+    }
+}

@@ -1,0 +1,18 @@
+//! What a bench says about one station before it is switched on.
+
+use crate::words::RowId;
+
+/// A station as the bench sets it up.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Setup {
+    /// Which station of the device, from 0.
+    pub station: usize,
+    /// Start values, kept over power-off as if somebody had stored them.
+    pub values: Vec<(RowId, u32)>,
+    /// The address switches.
+    pub switches: u8,
+    /// Signals on the input terminals, bit by bit.
+    pub terminals: u16,
+    /// What the position register says at power-on, in counts.
+    pub position: i64,
+}

@@ -1,0 +1,54 @@
+//! What a row shows: what was written, or what the drive computes when somebody looks.
+
+use super::Drive;
+use crate::model::Shows;
+use crate::words::{Output, Quantity, RowId};
+
+impl Drive {
+    /// The bits of what `row` shows right now.
+    pub fn show(&self, row: RowId) -> u32 {
+        match self.model.wiring.shows(row) {
+            None => self.bank.raw(row),
+            Some(Shows::Quantity(quantity)) => {
+                self.model.map.row(row).kind.raw(self.quantity(*quantity))
+            }
+            Some(Shows::Bits(bits)) => {
+                let outputs = self.outputs();
+                let bit = |(bit, shown): &(u8, crate::model::Shown)| {
+                    u32::from(shown.is_active(outputs)) << bit
+                };
+                bits.iter().map(bit).sum()
+            }
+            Some(Shows::OutputWord(word)) => self.output_word(*word),
+            Some(Shows::InputTerminals(monitor)) => self.monitor_inputs(*monitor),
+            Some(Shows::OutputTerminals(monitor)) => self.monitor_outputs(*monitor),
+        }
+    }
+
+    /// Is the output signal active?
+    pub fn output(&self, signal: Output) -> bool {
+        self.outputs().has(signal)
+    }
+
+    /// A number that the drive computes, in the base unit of its dimension.
+    pub fn quantity(&self, quantity: Quantity) -> i64 {
+        match quantity {
+            Quantity::PositionActual => self.position,
+            Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
+            Quantity::UnitInUse => self.unit.into(),
+            Quantity::UnitSwitches => self.switches.into(),
+        }
+    }
+
+    fn output_word(&self, word: u8) -> u32 {
+        let Some(words) = &self.model.wiring.output_words else { return 0 };
+        let outputs = self.outputs();
+        let enabled =
+            words.enabled_by.get(usize::from(word)).map_or(0xFFFF, |row| self.bank.raw(*row));
+        let mine = words.positions.iter().filter(|(position, _)| position / 16 == u16::from(word));
+        let bit = |(position, shown): &(u16, crate::model::Shown)| {
+            u32::from(shown.is_active(outputs)) << (position % 16)
+        };
+        mine.map(bit).sum::<u32>() & enabled
+    }
+}

@@ -1,0 +1,113 @@
+//! Input signals gathered from terminals, words and bits; output signals told from the state.
+
+use super::Drive;
+use crate::behaviour::Trip;
+use crate::model::{Monitor, Shown, Terminals};
+use crate::words::{AlarmCause, Input, Inputs, Output, Outputs};
+
+impl Drive {
+    /// Looks at every source again and tells the behaviours what changed.
+    pub(super) fn gather_inputs(&mut self) {
+        let now = self.active_inputs();
+        let before = std::mem::replace(&mut self.inputs, now);
+        let tell = &mut |change| self.changes.push_back(change);
+        let forced = now.has(Input::AlarmForce).then_some(AlarmCause::Forced);
+        self.servo.stand(forced);
+        let alarm = forced.and_then(|cause| self.model.wiring.alarm(cause));
+        if let Some(alarm) = alarm {
+            let (cause, code, resettable) = (alarm.cause, alarm.code, alarm.resettable);
+            self.servo.trip(Trip { cause, code, resettable }, tell);
+        }
+        if now.risen_since(before).has(Input::AlarmReset) {
+            self.servo.reset(tell);
+        }
+        self.servo.want(now.has(Input::ServoOn), tell);
+    }
+
+    /// The output signals, right now.
+    pub(super) fn outputs(&self) -> Outputs {
+        let enabled = self.servo.is_enabled();
+        Outputs::default()
+            .with(Output::Powered, true)
+            .with(Output::Ready, self.servo.is_ready())
+            .with(Output::Enabled, enabled)
+            .with(Output::Alarm, self.servo.alarm().is_some())
+            .with(Output::BrakeOpen, enabled)
+    }
+
+    /// Input terminals as `monitor` shows them, bit by bit.
+    pub(super) fn monitor_inputs(&self, monitor: Monitor) -> u32 {
+        let Some(terminals) = &self.model.wiring.input_terminals else { return 0 };
+        let active = u32::from(self.terminals) ^ self.normally_closed(terminals);
+        monitored(monitor, active, self.normally_closed(terminals), terminals)
+    }
+
+    /// Output terminals as `monitor` shows them, bit by bit.
+    pub(super) fn monitor_outputs(&self, monitor: Monitor) -> u32 {
+        let Some(terminals) = &self.model.wiring.output_terminals else { return 0 };
+        let outputs = self.outputs();
+        let mut active = 0;
+        for (i, row) in terminals.functions.iter().enumerate() {
+            let shown = terminals.meaning(self.bank.raw(*row));
+            active |= u32::from(shown.is_some_and(|shown| shown.is_active(outputs))) << i;
+        }
+        monitored(monitor, active, self.normally_closed(terminals), terminals)
+    }
+
+    fn active_inputs(&self) -> Inputs {
+        let wiring = &self.model.wiring;
+        let mut inputs = Inputs::default();
+        if let Some(terminals) = &wiring.input_terminals {
+            let active = u32::from(self.terminals) ^ self.normally_closed(terminals);
+            for (i, row) in terminals.functions.iter().enumerate() {
+                let signal = terminals.meaning(self.bank.raw(*row));
+                signal
+                    .filter(|_| active >> i & 1 != 0)
+                    .into_iter()
+                    .for_each(|it| inputs.insert(it));
+            }
+        }
+        if let Some(words) = &wiring.input_words {
+            for (position, signal) in &words.positions {
+                let (word, bit) = (usize::from(position / 16), position % 16);
+                let enabled = words
+                    .enabled_by
+                    .get(word)
+                    .is_none_or(|row| self.bank.raw(*row) >> bit & 1 != 0);
+                if enabled && self.bank.raw(words.rows[word]) >> bit & 1 != 0 {
+                    inputs.insert(*signal);
+                }
+            }
+        }
+        for (row, bits) in &wiring.input_bits {
+            for (bit, signal) in bits {
+                if self.bank.raw(*row) >> bit & 1 != 0 {
+                    inputs.insert(*signal);
+                }
+            }
+        }
+        inputs
+    }
+
+    fn normally_closed<S>(&self, terminals: &Terminals<S>) -> u32 {
+        let all = (1u32 << terminals.functions.len()) - 1;
+        terminals.normally_closed.map_or(0, |row| self.bank.raw(row) & all)
+    }
+}
+
+impl Shown {
+    /// Does it show as active, given the signals?
+    pub(super) fn is_active(self, outputs: Outputs) -> bool {
+        outputs.has(self.signal) != self.inverted
+    }
+}
+
+fn monitored<S>(monitor: Monitor, active: u32, closed: u32, terminals: &Terminals<S>) -> u32 {
+    let all = (1u32 << terminals.functions.len()) - 1;
+    match monitor {
+        Monitor::Active => active,
+        // A normally closed terminal carries a signal while it is inactive.
+        Monitor::Signal => active ^ closed,
+        Monitor::NoSignal => !(active ^ closed) & all,
+    }
+}
