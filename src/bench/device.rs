@@ -1,0 +1,167 @@
+//! One device of a bench: a model with its options, and what each station of it is set to.
+
+use crate::drive::Setup;
+use crate::model::{Model, RowId};
+use crate::problem::suggest;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A device as somebody asks for it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct DeviceSpec {
+    /// Unit address; of a device with several stations the first one's.
+    pub unit: Option<u8>,
+    /// Start values by register.
+    pub set: BTreeMap<String, i64>,
+    /// Address switches.
+    pub switches: Option<u8>,
+    /// Input terminals that carry a signal from the start, by name.
+    pub terminals: Vec<String>,
+    /// What the position register says at power-on, in counts.
+    pub position: i64,
+}
+
+/// A device with its model: one [`Setup`] a station.
+#[derive(Debug, Clone)]
+pub struct Device {
+    /// Its model, with options chosen.
+    pub model: Arc<Model>,
+    /// Its stations.
+    pub setups: Vec<Setup>,
+}
+
+/// Which wish of a [`DeviceSpec`] can't be met.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Wish {
+    /// The unit address.
+    Unit,
+    /// A start value.
+    Set(String),
+    /// The address switches.
+    Switches,
+    /// A terminal, by position in the list.
+    Terminal(usize),
+}
+
+/// Why a wish can't be met.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SpecProblem {
+    /// Which.
+    pub wish: Wish,
+    /// Why.
+    pub what: String,
+    /// What to do.
+    pub advice: Option<String>,
+}
+
+impl Device {
+    /// Sets up a device of `model` as `spec` says.
+    ///
+    /// # Errors
+    /// Every wish that the model can't meet.
+    pub fn new(model: Arc<Model>, spec: &DeviceSpec) -> Result<Self, Vec<SpecProblem>> {
+        let mut problems = Vec::new();
+        let mut values = Vec::new();
+        for (name, value) in &spec.set {
+            match start_value(&model, name, *value) {
+                Ok(value) => values.push(value),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        let switches = switches(&model, spec, &mut problems);
+        let terminals = terminals(&model, spec, &mut problems);
+        let setups = (0..model.stations.len()).map(|station| {
+            let mut values = values.clone();
+            values.extend(
+                spec.unit.and_then(|unit| unit_value(&model, unit, station, &mut problems)),
+            );
+            Setup { station, values, switches, terminals, position: spec.position }
+        });
+        let setups = setups.collect();
+        match problems.is_empty() {
+            true => Ok(Self { model, setups }),
+            false => Err(problems),
+        }
+    }
+}
+
+fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), SpecProblem> {
+    let wish = Wish::Set(name.to_owned());
+    let Some(id) = model.map.find(name) else {
+        let ids = model.map.rows().map(|(_, row)| row.id.as_str());
+        let options = model.options.iter().map(|option| option.name.as_str());
+        let advice = suggest::did_you_mean(name, ids.chain(options));
+        return Err(SpecProblem { wish, what: format!("no register or option `{name}`"), advice });
+    };
+    let row = model.map.row(id);
+    // People write the bits of a negative number as well as the number.
+    let bits = u32::try_from(value).ok().map(|raw| row.kind.value(raw));
+    let value = [Some(value), bits].into_iter().flatten().find(|value| row.admits(*value));
+    match value {
+        _ if model.wiring.shows(id).is_some() => {
+            let what = format!("{} shows what the drive computes and can't be set", row.label());
+            Err(SpecProblem { wish, what, advice: None })
+        }
+        Some(value) => Ok((id, row.kind.raw(value))),
+        None => {
+            let what = format!("{} takes {}", row.label(), row.range_text());
+            Err(SpecProblem { wish, what, advice: None })
+        }
+    }
+}
+
+fn unit_value(
+    model: &Model,
+    unit: u8,
+    station: usize,
+    problems: &mut Vec<SpecProblem>,
+) -> Option<(RowId, u32)> {
+    let row = model.map.row(model.line.unit.row);
+    let value = i64::from(unit) + station as i64;
+    if !row.admits(value) || value == 0 {
+        let what = format!("{} takes {}, not {value}", row.label(), row.range_text());
+        problems.push(SpecProblem { wish: Wish::Unit, what, advice: None });
+        return None;
+    }
+    Some((model.line.unit.row, row.kind.raw(value)))
+}
+
+fn switches(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) -> u8 {
+    let Some(switches) = spec.switches else { return 0 };
+    let count = model.line.unit.switches;
+    let most = ((1u16 << count) - 1) as u8;
+    let mut refuse = |what: String, advice: Option<String>| {
+        problems.push(SpecProblem { wish: Wish::Switches, what, advice });
+    };
+    if count == 0 {
+        refuse("this drive has no address switches".into(), Some("use `unit`".into()));
+    } else if switches > most {
+        refuse(format!("{count} switches make 0..{most}, not {switches}"), None);
+    } else if switches != 0 && spec.unit.is_some_and(|unit| unit != switches) {
+        let what = format!("the switches say {switches}, and then `unit` changes nothing");
+        refuse(what, Some("give one of the two".into()));
+    }
+    switches
+}
+
+fn terminals(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) -> u16 {
+    let terminals = model.wiring.input_terminals.as_ref();
+    let names: Vec<String> =
+        terminals.map_or(Vec::new(), |it| (0..it.functions.len()).map(|i| it.name(i)).collect());
+    let mut signals = 0;
+    for (i, name) in spec.terminals.iter().enumerate() {
+        match names.iter().position(|it| it == name) {
+            Some(index) => signals |= 1 << index,
+            None => problems.push(SpecProblem {
+                wish: Wish::Terminal(i),
+                what: format!("no input terminal `{name}`"),
+                advice: Some(match names.as_slice() {
+                    [] => "this drive has none".into(),
+                    [first, .., last] => format!("there are {first} to {last}"),
+                    [only] => format!("there is {only}"),
+                }),
+            }),
+        }
+    }
+    signals
+}

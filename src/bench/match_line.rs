@@ -1,0 +1,51 @@
+//! Sets each drive's own baud and format parameters to the line's, as whoever wired the cell has done.
+
+use super::Device;
+use crate::line::Settings;
+use crate::model::{Coded, Model, RowId};
+
+/// Sets the serial parameters of `device` to `settings` and `ascii`.
+///
+/// # Errors
+/// One sentence, if the drive has no code for that speed or format; it could never be on such a line.
+pub fn match_line(device: &mut Device, settings: Settings, ascii: bool) -> Result<(), String> {
+    let model = device.model.clone();
+    let line = &model.line;
+    let baud = code(&line.baud, |baud| *baud == settings.baud).ok_or_else(|| {
+        let known: Vec<_> = line.baud.codes.values().map(u32::to_string).collect();
+        format!("{} can't do {} baud; it can do {}", model.name, settings.baud, known.join(", "))
+    })?;
+    let format = code(&line.format, |it| it.ascii == ascii && it.format == settings.format);
+    let format = format.ok_or_else(|| {
+        let text = |it: &crate::model::WireFormat| {
+            format!("{}{}", if it.ascii { "ASCII " } else { "" }, it.format)
+        };
+        let known: Vec<_> = line.format.codes.values().map(text).collect();
+        let kind = if ascii { "ASCII" } else { "RTU" };
+        let (name, format) = (&model.name, settings.format);
+        format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))
+    })?;
+    for setup in &mut device.setups {
+        put(&model, setup, line.baud.row, line.baud.digit, baud);
+        put(&model, setup, line.format.row, line.format.digit, format);
+    }
+    Ok(())
+}
+
+fn code<T>(coded: &Coded<T>, fits: impl Fn(&T) -> bool) -> Option<i64> {
+    coded.codes.iter().find(|(_, meaning)| fits(meaning)).map(|(code, _)| *code)
+}
+
+/// Puts `code` into the row, or into the digit of it, leaving its other digits as they are.
+fn put(model: &Model, setup: &mut crate::drive::Setup, row: RowId, digit: Option<u8>, code: i64) {
+    let value = |(id, raw): &(RowId, u32)| (*id == row).then_some(*raw);
+    let of_station = &model.stations[setup.station].init;
+    let present = setup.values.iter().rev().find_map(value);
+    let present = present.or_else(|| of_station.iter().find_map(value));
+    let present = present.unwrap_or(model.map.row(row).init);
+    let raw = match digit {
+        None => model.map.row(row).kind.raw(code),
+        Some(digit) => present & !(0xF << (4 * digit)) | (code as u32) << (4 * digit),
+    };
+    setup.values.push((row, raw));
+}

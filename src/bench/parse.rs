@@ -1,0 +1,259 @@
+//! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
+
+use super::raw::{KEYS, RawBenchDrive, RawBenchLine};
+use super::{
+    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, SpecProblem, WireSpec, Wish,
+    match_line,
+};
+use crate::drive::Drive;
+use crate::line::Settings;
+use crate::model::{Choices, Model};
+use crate::problem::{At, Path, Problem, section};
+use crate::time::Instant;
+use serde_yaml::Value;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a YAML file is, judged by its keys.
+pub fn kind_of(text: &str) -> &'static str {
+    match serde_yaml::from_str::<Value>(text) {
+        Ok(file) if file.get("lines").is_some() => "bench",
+        _ => "model",
+    }
+}
+
+/// Reads a bench.
+///
+/// # Errors
+/// Every problem of the file. A problem inside a model file is told by its number of problems only; check
+/// that file itself.
+pub fn parse(text: &str, library: &dyn Library) -> Result<Bench, Vec<Problem>> {
+    let (file, problems) = section::tree(text)?;
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let mut reader = Reader { library, models: BTreeMap::new(), problems };
+    let bench = reader.bench(&file);
+    match reader.problems.is_empty() {
+        true => Ok(bench),
+        false => Err(reader.problems),
+    }
+}
+
+/// Everything of the file but its lines, which are read one by one.
+#[derive(serde::Deserialize)]
+struct Head {
+    seed: Option<u64>,
+    #[serde(rename = "lines")]
+    _lines: serde::de::IgnoredAny,
+}
+
+struct Reader<'a> {
+    library: &'a dyn Library,
+    /// Drives of one model with the same options share it.
+    models: BTreeMap<(String, Choices), Arc<Model>>,
+    problems: Vec<Problem>,
+}
+
+impl Reader<'_> {
+    fn bench(&mut self, file: &Value) -> Bench {
+        let head: Option<Head> = section::read(file, &Path::root(), KEYS, &mut self.problems);
+        let seed = head.and_then(|head| head.seed);
+        let path = Path::root().key("lines");
+        let items = match file.get("lines") {
+            Some(Value::Sequence(items)) => items.as_slice(),
+            Some(_) => {
+                self.problems.push(Problem::value(path.clone(), "this is a list of lines"));
+                &[]
+            }
+            None => &[],
+        };
+        let mut lines: Vec<BenchLine> = Vec::new();
+        for (i, value) in items.iter().enumerate() {
+            let path = path.index(i);
+            let raw: Option<RawBenchLine> = section::read(value, &path, KEYS, &mut self.problems);
+            let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
+            if lines.iter().any(|it| it.name == line.name) {
+                let what = format!("there is a line `{}` above", line.name);
+                self.problems.push(Problem::value(path.key("name"), what));
+            }
+            lines.push(line);
+        }
+        if items.is_empty() && self.problems.is_empty() {
+            self.problems.push(Problem::key(path, "a bench needs a line"));
+        }
+        Bench { seed, lines }
+    }
+
+    fn line(&mut self, index: usize, raw: &RawBenchLine, path: &Path) -> Option<BenchLine> {
+        let name = raw.name.clone().unwrap_or_else(|| format!("line-{}", index + 1));
+        let port = self.port(raw, path);
+        let mut devices = Vec::new();
+        for (i, drive) in raw.drives.iter().enumerate() {
+            devices.push(self.device(drive, &path.key("drives").index(i)));
+        }
+        if devices.is_empty() {
+            self.problems.push(Problem::key(path.key("drives"), "a line needs a drive"));
+        }
+        let devices: Vec<Device> = devices.into_iter().collect::<Option<_>>()?;
+        let line = self.wired(name, port?, raw, devices, path)?;
+        self.addresses(&line, path);
+        Some(line)
+    }
+
+    fn port(&mut self, raw: &RawBenchLine, path: &Path) -> Option<PortSpec> {
+        let given = [
+            raw.pty.as_ref().map(|link| PortSpec::Pty((link != "auto").then(|| link.clone()))),
+            raw.serial.clone().map(PortSpec::Serial),
+            raw.tcp.clone().map(PortSpec::Tcp),
+            raw.rtu_over_tcp.clone().map(PortSpec::RtuOverTcp),
+        ];
+        let mut given = given.into_iter().flatten();
+        match (given.next(), given.next()) {
+            (Some(port), None) => Some(port),
+            (None, _) => {
+                let what = "this line has no port";
+                let advice = "give one of pty, serial, tcp, rtu_over_tcp";
+                self.problems.push(Problem::value(path.clone(), what).advise(advice));
+                None
+            }
+            (Some(_), Some(_)) => {
+                let what = "a line has one port, this one has several";
+                self.problems.push(Problem::value(path.clone(), what).advise("make it two lines"));
+                None
+            }
+        }
+    }
+
+    fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
+        let model = self.model(raw, path)?;
+        let spec = DeviceSpec {
+            unit: raw.unit,
+            set: raw.set.clone(),
+            switches: raw.switches,
+            terminals: raw.terminals.clone(),
+            position: raw.machine.position.into(),
+        };
+        match Device::new(model, &spec) {
+            Ok(device) => Some(device),
+            Err(problems) => {
+                self.problems.extend(problems.into_iter().map(|problem| at_wish(problem, path)));
+                None
+            }
+        }
+    }
+
+    fn model(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Arc<Model>> {
+        let key = (raw.model.clone(), raw.options.clone());
+        if let Some(model) = self.models.get(&key) {
+            return Some(model.clone());
+        }
+        let path_of_model = path.key("model");
+        let (file, text) = match self.library.fetch(&raw.model) {
+            Ok(found) => found,
+            Err(what) => {
+                self.problems.push(Problem::value(path_of_model, what));
+                return None;
+            }
+        };
+        match crate::model::load(&text, &raw.options) {
+            Ok(model) => {
+                let model = Arc::new(model);
+                self.models.insert(key, model.clone());
+                Some(model)
+            }
+            Err(problems) if crate::model::load(&text, &Choices::new()).is_ok() => {
+                let of_options =
+                    |problem: Problem| Problem { path: path.join(&problem.path), ..problem };
+                self.problems.extend(problems.into_iter().map(of_options));
+                None
+            }
+            Err(problems) => {
+                let what =
+                    format!("{file} has {} problem(s), the first: {}", problems.len(), problems[0]);
+                let problem = Problem::value(path_of_model, what);
+                self.problems.push(problem.advise(format!("see `drivemu check {file}`")));
+                None
+            }
+        }
+    }
+
+    /// Settles speed, format and framing of the line, and sets every drive on it to them.
+    fn wired(
+        &mut self,
+        name: String,
+        port: PortSpec,
+        raw: &RawBenchLine,
+        mut devices: Vec<Device>,
+        path: &Path,
+    ) -> Option<BenchLine> {
+        let settings = match raw.settings.as_deref().map(str::parse::<Settings>).transpose() {
+            Ok(settings) => settings,
+            Err(what) => {
+                self.problems.push(Problem::value(path.key("settings"), what));
+                return None;
+            }
+        };
+        let wire = WireSpec::of(&devices, settings, raw.ascii, raw.strict);
+        if !matches!(port, PortSpec::Tcp(_)) {
+            for (i, device) in devices.iter_mut().enumerate() {
+                if let Err(what) = match_line(device, wire.settings, wire.ascii) {
+                    let path = path.key("drives").index(i).key("model");
+                    let advice = "choose `settings` that all drives of the line know";
+                    self.problems.push(Problem::value(path, what).advise(advice));
+                }
+            }
+        }
+        Some(BenchLine { name, port, wire, devices })
+    }
+
+    /// No two stations of a line may answer to one address.
+    fn addresses(&mut self, line: &BenchLine, path: &Path) {
+        let mut taken: BTreeMap<u8, usize> = BTreeMap::new();
+        for (i, device) in line.devices.iter().enumerate() {
+            for setup in &device.setups {
+                let unit = Drive::new(device.model.clone(), setup, Instant::ZERO).unit();
+                let Some(other) = taken.insert(unit, i).filter(|_| unit != crate::wire::BROADCAST)
+                else {
+                    continue;
+                };
+                let what = format!("unit {unit} is taken by drive {} of this line", other + 1);
+                let path = path.key("drives").index(i).key("unit");
+                self.problems
+                    .push(Problem::value(path, what).advise("give each drive its own `unit`"));
+            }
+        }
+    }
+}
+
+impl WireSpec {
+    /// How a line with `devices` is set: as told, else as the first drive's own parameters say.
+    pub fn of(
+        devices: &[Device],
+        settings: Option<Settings>,
+        ascii: Option<bool>,
+        strict: bool,
+    ) -> Self {
+        let first = devices.first();
+        let own = first.and_then(|device| {
+            Drive::new(device.model.clone(), device.setups.first()?, Instant::ZERO).settings()
+        });
+        let (own, own_ascii) = own.unwrap_or((Settings::STANDARD, false));
+        Self {
+            settings: settings.unwrap_or(own),
+            ascii: ascii.unwrap_or(own_ascii),
+            strict,
+            silence: first.map_or(3.5, |device| device.model.line.silence),
+        }
+    }
+}
+
+fn at_wish(problem: SpecProblem, path: &Path) -> Problem {
+    let path = match &problem.wish {
+        Wish::Unit => path.key("unit"),
+        Wish::Set(name) => path.key("set").key(name),
+        Wish::Switches => path.key("switches"),
+        Wish::Terminal(i) => path.key("terminals").index(*i),
+    };
+    Problem { path, at: At::Value, what: problem.what, advice: problem.advice, mark: None }
+}

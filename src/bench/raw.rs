@@ -1,0 +1,105 @@
+//! A bench file as it is written: the reference of the format.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+#[cfg(feature = "cli")]
+use schemars::JsonSchema;
+
+/// A bench: lines and the drives on them.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawBench {
+    /// The seed of the run; `--seed` wins over it. Default: drawn and printed.
+    pub seed: Option<u64>,
+    /// The lines.
+    pub lines: Vec<RawBenchLine>,
+}
+
+/// One line. Exactly one of `pty`, `serial`, `tcp` and `rtu_over_tcp` says where masters reach it.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawBenchLine {
+    /// Its name in the log; default `line-1`, `line-2` ...
+    pub name: Option<String>,
+    /// A pseudo-terminal of our own: the path of a symlink to it, relative to this file, or `auto` for none.
+    pub pty: Option<String>,
+    /// A serial device.
+    pub serial: Option<String>,
+    /// Modbus TCP: address and port to listen on; port 0 picks a free one.
+    pub tcp: Option<String>,
+    /// Serial frames over TCP: address and port to listen on.
+    pub rtu_over_tcp: Option<String>,
+    /// Speed and character format, `9600-8N2`; every drive on the line is set to it. Default: what the
+    /// first drive's own parameters say.
+    pub settings: Option<String>,
+    /// ASCII framing instead of RTU. Default: what the first drive's own parameters say.
+    pub ascii: Option<bool>,
+    /// End RTU frames by silence alone, as the standard says, instead of closing a complete one at once.
+    #[serde(default)]
+    pub strict: bool,
+    /// The drives.
+    pub drives: Vec<RawBenchDrive>,
+}
+
+/// One drive on a line.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawBenchDrive {
+    /// A built-in model, a product, or the path of a model file relative to this file.
+    pub model: String,
+    /// Unit address; of a drive with several stations the first one's. Default: the model's.
+    pub unit: Option<u8>,
+    /// The model's options, by name.
+    #[serde(default)]
+    pub options: BTreeMap<String, String>,
+    /// Start values, by register.
+    #[serde(default)]
+    pub set: BTreeMap<String, i64>,
+    /// The address switches, as a number.
+    pub switches: Option<u8>,
+    /// Input terminals that carry a signal from the start.
+    #[serde(default)]
+    pub terminals: Vec<String>,
+    /// The machine on its axis.
+    #[serde(default)]
+    pub machine: RawMachine,
+}
+
+/// The machine on the axis of a drive.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawMachine {
+    /// What the drive's position register says at power-on, in counts; default 0.
+    #[serde(default)]
+    pub position: i32,
+}
+
+/// JSON Schema of a bench file, for editors.
+#[cfg(feature = "cli")]
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(RawBench).to_value()
+}
+
+/// Every key of the format, for advice on unknown ones.
+pub const KEYS: &[&str] = &[
+    "ascii",
+    "drives",
+    "lines",
+    "machine",
+    "model",
+    "name",
+    "options",
+    "position",
+    "pty",
+    "rtu_over_tcp",
+    "seed",
+    "serial",
+    "set",
+    "settings",
+    "strict",
+    "switches",
+    "tcp",
+    "terminals",
+    "unit",
+];

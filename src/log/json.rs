@@ -1,0 +1,148 @@
+//! The log for programs: one JSON object an event.
+
+use super::rows::{self, Item};
+use super::{text, why};
+use crate::bus::Bus;
+use crate::drive::Drive;
+use crate::event::{Change, Event, Transaction, What};
+use crate::model::Row;
+use crate::wire::hex::to_hex;
+use crate::words::{Refusal, Word};
+use serde_json::{Map, Value, json};
+
+/// One event of the line called `name` as a JSON object.
+///
+/// Every object has `t` (seconds of the emulated world), `line`, `event` and `text`, the line of the text
+/// log without its time. The other keys depend on the event.
+pub fn object(event: &Event, name: &str, bus: &Bus) -> Value {
+    let mut object = Map::new();
+    object.insert("t".into(), json!(event.at.as_nanos() as f64 / 1e9));
+    object.insert("line".into(), json!(name));
+    let (kind, fields) = fields(&event.what, bus);
+    object.insert("event".into(), json!(kind));
+    if let Value::Object(fields) = fields {
+        object.extend(fields);
+    }
+    let line = text::line(event, bus);
+    let told = line.split_once(' ').map_or("", |(_, told)| told);
+    object.insert("text".into(), json!(told));
+    Value::Object(object)
+}
+
+fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
+    match what {
+        What::Transaction(it) => transaction(bus.drive(it.drive), it),
+        What::Broadcast { drive, request, refusal } => {
+            let drive = bus.drive(*drive);
+            let mut fields = json!({"unit": drive.unit(), "request": to_hex(request)});
+            if let Some(refusal) = refusal {
+                merge(&mut fields, refused(drive, refusal));
+            }
+            ("broadcast", fields)
+        }
+        What::BroadcastRead { request } => ("broadcast", json!({"request": to_hex(request)})),
+        What::Foreign { unit, pdu, answer } => {
+            ("foreign", json!({"unit": unit, "pdu": to_hex(pdu), "answer": answer}))
+        }
+        What::BadCrc { frame, crc, answered } => (
+            "bad_crc",
+            json!({
+                "frame": to_hex(frame),
+                "got": to_hex(&crc.got.to_le_bytes()),
+                "want": to_hex(&crc.want.to_le_bytes()),
+                "exception": answered.map(|(_, code)| code),
+            }),
+        ),
+        What::BadAscii { characters, why } => {
+            let characters = String::from_utf8_lossy(characters);
+            ("bad_ascii", json!({"characters": characters, "why": why::ascii(*why)}))
+        }
+        What::Noise { head, len, why } => {
+            ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why)}))
+        }
+        What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
+        What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
+    }
+}
+
+fn transaction(drive: &Drive, it: &Transaction) -> (&'static str, Value) {
+    let mut fields = json!({
+        "unit": it.unit,
+        "request": to_hex(&it.request),
+        "answer": to_hex(&it.answer),
+    });
+    let (kind, items) = match rows::request(drive, &it.request) {
+        rows::Told::Read(span) if it.refusal.is_none() => {
+            ("read", rows::answer(drive, span, &it.answer))
+        }
+        rows::Told::Read(_) => ("read", Vec::new()),
+        rows::Told::Write(_, items) => ("write", items),
+        rows::Told::Other => ("request", Vec::new()),
+    };
+    let rows = items.iter().map(|item| item_fields(drive, *item));
+    merge(&mut fields, json!({"rows": rows.collect::<Vec<_>>()}));
+    if let Some(refusal) = &it.refusal {
+        merge(&mut fields, refused(drive, refusal));
+    }
+    (kind, fields)
+}
+
+fn refused(drive: &Drive, refusal: &Refusal) -> Value {
+    json!({
+        "refused": refusal.cause.name(),
+        "exception": refusal.code,
+        "why": why::refusal(drive, refusal),
+    })
+}
+
+fn item_fields(drive: &Drive, item: Item) -> Value {
+    let map = &drive.model().map;
+    let named = |row: &Row| json!({"row": row.id, "address": row.at, "name": row.name});
+    match item {
+        Item::Row(id, value) => {
+            let mut fields = named(map.row(id));
+            merge(&mut fields, json!({"value": value}));
+            fields
+        }
+        Item::Half(id, word) => {
+            let mut fields = named(map.row(id));
+            merge(&mut fields, json!({"word": word}));
+            fields
+        }
+        Item::Bare(address, word) => json!({"address": address, "word": word}),
+    }
+}
+
+fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Value) {
+    let mut fields = json!({"unit": unit});
+    let (kind, more) = match change {
+        Change::PoweredOn => ("power_on", json!({})),
+        Change::Ready => ("ready", json!({})),
+        Change::Enabled(on) => ("servo", json!({"on": on})),
+        Change::Alarm { cause, code } => ("alarm", json!({"cause": cause.name(), "code": code})),
+        Change::AlarmCleared => ("alarm_cleared", json!({})),
+        Change::AlarmStays { cause } => ("alarm_stays", json!({"cause": cause.name()})),
+        Change::WordExpired { word, hold, held_ms } => {
+            let map = &drive.model().map;
+            let (word, hold) = (&map.row(*word).id, &map.row(*hold).id);
+            ("word_expired", json!({"row": word, "hold": hold, "held_ms": held_ms}))
+        }
+        Change::PositionCleared => ("position_cleared", json!({})),
+        Change::Stored => ("stored", json!({})),
+        Change::FactoryRestored => ("factory_restored", json!({})),
+        Change::Unit { from, to } => ("unit_changed", json!({"from": from, "to": to})),
+        Change::Terminal { index, signal } => {
+            let terminals = drive.model().wiring.input_terminals.as_ref();
+            let name = terminals.map(|it| it.name(usize::from(*index)));
+            ("terminal", json!({"terminal": name, "signal": signal}))
+        }
+    };
+    merge(&mut fields, more);
+    (kind, fields)
+}
+
+fn merge(into: &mut Value, more: Value) {
+    if let (Value::Object(into), Value::Object(more)) = (into, more) {
+        into.extend(more);
+    }
+}

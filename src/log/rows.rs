@@ -1,0 +1,123 @@
+//! Requests and answers in terms of rows: `P03.04 jog speed = 7000`.
+
+use crate::bank::row_value;
+use crate::drive::Drive;
+use crate::model::{Located, Row, RowId};
+use crate::wire::{LengthCheck, Request, Span, Words};
+
+/// A row of a request with the number that travelled, or a bare word where there is no row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Item {
+    /// A whole row.
+    Row(RowId, i64),
+    /// One word of a pair.
+    Half(RowId, u16),
+    /// An address without a row.
+    Bare(u16, u16),
+}
+
+/// What a request does, in rows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Told {
+    /// Read these addresses.
+    Read(Span),
+    /// Write these rows.
+    Write(Span, Vec<Item>),
+    /// Not a request of ours.
+    Other,
+}
+
+/// Reads a request PDU.
+pub fn request(drive: &Drive, pdu: &[u8]) -> Told {
+    let parsed = Request::parse(pdu, drive.model().line.length_check)
+        .or_else(|_| Request::parse(pdu, LengthCheck::CountOnly));
+    match parsed {
+        Ok(Request::Read(span)) => Told::Read(span),
+        Ok(Request::WriteOne { address, value }) => {
+            let span = Span::one(address);
+            Told::Write(span, items(drive, span, |i| value.get(i)))
+        }
+        Ok(Request::WriteMany { span, values }) => {
+            Told::Write(span, items(drive, span, |i| Words::get(values, i)))
+        }
+        Err(_) => Told::Other,
+    }
+}
+
+/// The rows that the answer to a read carries.
+pub fn answer(drive: &Drive, span: Span, pdu: &[u8]) -> Vec<Item> {
+    let word = |i: usize| {
+        let bytes = pdu.get(2 + 2 * i..4 + 2 * i)?;
+        Some(u16::from_be_bytes([bytes[0], bytes[1]]))
+    };
+    items(drive, span, word)
+}
+
+fn items(drive: &Drive, span: Span, word: impl Fn(usize) -> Option<u16>) -> Vec<Item> {
+    let (model, bank) = (drive.model(), drive.bank());
+    let mut items = Vec::new();
+    let mut addresses = span.addresses().enumerate().peekable();
+    while let Some((i, address)) = addresses.next() {
+        let Some(first) = word(i) else { break };
+        let Located::Word { row: id, word: 0, .. } = model.map.locate(address) else {
+            items.push(match model.map.locate(address) {
+                Located::Word { row, .. } => Item::Half(row, first),
+                _ => Item::Bare(address, first),
+            });
+            continue;
+        };
+        let row = model.map.row(id);
+        if row.kind.words() == 1 {
+            items.push(Item::Row(id, row.kind.value(first.into())));
+            continue;
+        }
+        match addresses.next_if(|_| word(i + 1).is_some()) {
+            Some((j, _)) => {
+                let second = word(j).unwrap_or(0);
+                let value = row_value(row, bank.order(model, row), [first, second]);
+                items.push(Item::Row(id, value));
+            }
+            None => items.push(Item::Half(id, first)),
+        }
+    }
+    items
+}
+
+/// `P03.04 jog speed = 7000`.
+pub fn text(drive: &Drive, item: Item) -> String {
+    let map = &drive.model().map;
+    match item {
+        Item::Row(id, value) => format!("{} = {}", label(map.row(id)), number(map.row(id), value)),
+        Item::Half(id, word) => format!("half of {} = 0x{word:04X}", label(map.row(id))),
+        Item::Bare(address, word) => format!("0x{address:04X} = {word}"),
+    }
+}
+
+/// The row as the log calls it: code, or address, and name in small letters.
+pub fn label(row: &Row) -> String {
+    let label = row.label();
+    let Some((code, name)) = label.split_once(' ') else { return label };
+    let mut letters = name.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), second) if second.is_none_or(|it| it.is_lowercase() || it == ' ') => {
+            format!("{code} {}{}", first.to_lowercase(), &name[first.len_utf8()..])
+        }
+        _ => label,
+    }
+}
+
+/// A value as the row means it: words in hex where bits have names, and the meaning of a code.
+pub fn number(row: &Row, value: i64) -> String {
+    if let Some(meaning) = row.values.get(&value) {
+        return format!("{value} ({meaning})");
+    }
+    if !row.bits.is_empty() {
+        return format!("0x{:04X}", row.kind.raw(value));
+    }
+    match row.unit_text.as_str() {
+        "" => value.to_string(),
+        // A factor is no unit of its own: 60 of `0.1 rpm`.
+        unit if unit.contains(' ') => format!("{value} x {unit}"),
+        unit => format!("{value} {unit}"),
+    }
+}

@@ -1,0 +1,148 @@
+//! The log for reading over a coffee: one line an event.
+
+use super::{rows, why};
+use crate::bus::Bus;
+use crate::drive::Drive;
+use crate::event::{Change, Event, Transaction, What};
+use crate::wire::function::EXCEPTION;
+use crate::wire::hex::to_hex;
+use crate::words::Word;
+
+/// Rows of one transaction that are told; the rest is counted.
+const ROWS_TOLD: usize = 6;
+
+/// `0.532 unit 1 write P03.04 jog speed = 7000: refused, range 0..6000 -> exception 03`.
+pub fn line(event: &Event, bus: &Bus) -> String {
+    format!("{} {}", event.at, what(&event.what, bus))
+}
+
+fn what(what: &What, bus: &Bus) -> String {
+    match what {
+        What::Transaction(it) => transaction(bus.drive(it.drive), it),
+        What::Broadcast { drive, request, refusal } => {
+            let drive = bus.drive(*drive);
+            let asked = asked(drive, request);
+            match refusal {
+                None => format!("broadcast to unit {}: {asked}", drive.unit()),
+                Some(refusal) => {
+                    let why = why::refusal(drive, refusal);
+                    format!(
+                        "broadcast to unit {}: {asked}: refused, {why} -> silence",
+                        drive.unit()
+                    )
+                }
+            }
+        }
+        What::BroadcastRead { request } => {
+            format!("broadcast {}: silence, a read has nobody to answer it", to_hex(request))
+        }
+        What::Foreign { unit, pdu, answer } => {
+            let kind = if *answer { "answer of" } else { "request to" };
+            let none = bus.find(*unit).is_none();
+            let here =
+                if none && !*answer { format!("; {}", who_is_here(bus)) } else { String::new() };
+            format!("foreign {kind} unit {unit}: {}: silence{here}", to_hex(pdu))
+        }
+        What::BadCrc { frame, crc, answered } => {
+            let [got, want] = [crc.got, crc.want].map(|crc| to_hex(&crc.to_le_bytes()));
+            let end = match answered {
+                Some((_, code)) => format!("exception {code:02X}"),
+                None => "silence".into(),
+            };
+            format!("wrong CRC {got}, should be {want}: {} -> {end}", to_hex(frame))
+        }
+        What::BadAscii { characters, why } => {
+            let characters = String::from_utf8_lossy(characters).escape_debug().to_string();
+            format!("bad ASCII frame `:{characters}`, {}: silence", why::ascii(*why))
+        }
+        What::Noise { head, len, why } => {
+            let some = &head[..head.len().min(16)];
+            let more = if *len > some.len() { " ..." } else { "" };
+            format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(some))
+        }
+        What::Lost(why) => format!("stream closed, {}", why::header(*why)),
+        What::Drive { drive, unit, change } => {
+            format!("unit {unit} {}", change_text(bus.drive(*drive), change))
+        }
+    }
+}
+
+fn transaction(drive: &Drive, it: &Transaction) -> String {
+    let unit = it.unit;
+    if let Some(refusal) = &it.refusal {
+        let (asked, why) = (asked(drive, &it.request), why::refusal(drive, refusal));
+        return format!("unit {unit} {asked}: refused, {why} -> exception {:02X}", refusal.code);
+    }
+    match rows::request(drive, &it.request) {
+        rows::Told::Read(span) => {
+            let items = rows::answer(drive, span, &it.answer);
+            format!("unit {unit} read {}", list(drive, &items))
+        }
+        _ => format!("unit {unit} {}", asked(drive, &it.request)),
+    }
+}
+
+/// What a request asks for, without an answer.
+fn asked(drive: &Drive, request: &[u8]) -> String {
+    match rows::request(drive, request) {
+        rows::Told::Read(span) => match span.count() {
+            1 => format!("read 0x{:04X}", span.start()),
+            count => format!("read 0x{:04X} x {count}", span.start()),
+        },
+        rows::Told::Write(_, items) => format!("write {}", list(drive, &items)),
+        rows::Told::Other => {
+            let function = request.first().copied().unwrap_or(0) & !EXCEPTION;
+            format!("function {function:02X} {}", to_hex(request.get(1..).unwrap_or_default()))
+        }
+    }
+}
+
+fn list(drive: &Drive, items: &[rows::Item]) -> String {
+    let told = items.iter().take(ROWS_TOLD).map(|item| rows::text(drive, *item));
+    let told = told.collect::<Vec<_>>().join(", ");
+    match items.len().checked_sub(ROWS_TOLD) {
+        None | Some(0) => told,
+        Some(more) => format!("{told}, and {more} more"),
+    }
+}
+
+fn who_is_here(bus: &Bus) -> String {
+    let mut units: Vec<u8> = bus.drives().map(|(_, drive)| drive.unit()).collect();
+    units.sort_unstable();
+    let units: Vec<_> = units.iter().map(u8::to_string).collect();
+    match units.as_slice() {
+        [only] => format!("here is unit {only}"),
+        _ => format!("here are units {}", units.join(", ")),
+    }
+}
+
+fn change_text(drive: &Drive, change: &Change) -> String {
+    match change {
+        Change::PoweredOn => "power on".into(),
+        Change::Ready => "ready".into(),
+        Change::Enabled(true) => "servo on".into(),
+        Change::Enabled(false) => "servo off".into(),
+        Change::Alarm { cause, code } => format!("alarm {code}: {}", cause.about()),
+        Change::AlarmCleared => "alarm cleared".into(),
+        Change::AlarmStays { cause } => {
+            format!("alarm reset without effect: {}", cause.about())
+        }
+        Change::WordExpired { word, hold, held_ms } => {
+            let map = &drive.model().map;
+            let held = f64::from(*held_ms) / 1000.0;
+            let (word, hold) = (rows::label(map.row(*word)), &map.row(*hold).id);
+            format!("{word} = 0: not refreshed for {held} s ({hold})")
+        }
+        Change::PositionCleared => "position set to 0".into(),
+        Change::Stored => "all parameters stored".into(),
+        Change::FactoryRestored => "all parameters as from the factory".into(),
+        Change::Unit { from, to } => {
+            format!("answers to unit {to} from now on, no longer to {from}")
+        }
+        Change::Terminal { index, signal } => {
+            let terminals = drive.model().wiring.input_terminals.as_ref();
+            let name = terminals.map(|it| it.name(usize::from(*index))).unwrap_or_default();
+            format!("terminal {name} {}", if *signal { "on" } else { "off" })
+        }
+    }
+}

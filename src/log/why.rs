@@ -1,0 +1,72 @@
+//! Why something was refused or ignored, in words.
+
+use super::rows::label;
+use crate::drive::Drive;
+use crate::wire::NoiseCause;
+use crate::wire::ascii::BadAscii;
+use crate::wire::mbap::BadHeader;
+use crate::words::{Cause, Detail, Refusal};
+
+/// `range 0..6000`, `0x0026 is not mapped`.
+pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
+    let map = &drive.model().map;
+    match (refusal.cause, refusal.detail) {
+        (Cause::Function, Detail::Function(code)) => {
+            let known: Vec<_> =
+                drive.model().line.functions.iter().map(|code| format!("{code:02X}")).collect();
+            format!("function {code:02X} is not one of {}", known.join(", "))
+        }
+        (_, Detail::Length { got, want }) => {
+            format!("lengths do not agree, {got} bytes of PDU where {want} should be")
+        }
+        (_, Detail::Quantity { got: 0, .. }) => "no register asked for".into(),
+        (_, Detail::Quantity { got, most }) => format!("{got} registers, at most {most}"),
+        (Cause::AddressBeyond, Detail::Address(address)) => {
+            format!("0x{address:04X} lies beyond the map")
+        }
+        (_, Detail::Address(address)) => format!("0x{address:04X} is not mapped"),
+        (Cause::SplitLong, Detail::Row(row)) => {
+            format!("half of {}, which goes whole only", label(map.row(row)))
+        }
+        (Cause::ReadOnly, Detail::Row(row)) => format!("{} is read only", label(map.row(row))),
+        (Cause::WriteOnly, Detail::Row(row)) => format!("{} is write only", label(map.row(row))),
+        (Cause::State, Detail::Row(row)) => {
+            format!("{} is locked while the servo is on", label(map.row(row)))
+        }
+        (_, Detail::Value { row, .. }) => {
+            let range = map.row(row).range_text();
+            match range.contains(", ") {
+                true => format!("only {range}"),
+                false => format!("range {range}"),
+            }
+        }
+        (cause, detail) => format!("{cause:?} {detail:?}"),
+    }
+}
+
+/// Why bytes are no frame.
+pub fn noise(why: NoiseCause) -> &'static str {
+    match why {
+        NoiseCause::TooShort => "too short for a frame",
+        NoiseCause::TooLong => "too long for a frame",
+        NoiseCause::OutsideFrame => "outside a frame",
+        NoiseCause::Unfinished => "a frame that was not finished",
+    }
+}
+
+/// Why characters are no ASCII frame.
+pub fn ascii(why: BadAscii) -> String {
+    match why {
+        BadAscii::NotHex(at) => format!("character {} is no hex digit", at + 1),
+        BadAscii::Length(len) => format!("{len} characters are no whole number of bytes"),
+        BadAscii::Lrc { got, want } => format!("LRC {got:02X} should be {want:02X}"),
+    }
+}
+
+/// Why a TCP stream is lost.
+pub fn header(why: BadHeader) -> String {
+    match why {
+        BadHeader::Protocol(id) => format!("protocol {id} is not Modbus; is this serial framing?"),
+        BadHeader::Length(len) => format!("a length of {len} is not possible"),
+    }
+}

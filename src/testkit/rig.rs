@@ -1,0 +1,200 @@
+//! One line with drives and a clock that moves only when told to.
+
+use crate::bench::{
+    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, WireSpec,
+};
+use crate::bus::{Bus, Command, CommandError, LinkId, Output};
+use crate::drive::Drive;
+use crate::event::{DriveId, Event};
+use crate::line::{Framing, Settings};
+use crate::model::{Choices, load};
+use crate::problem::Problem;
+use crate::time::{Duration, Instant};
+use crate::wire::{crc16, rtu};
+use std::sync::Arc;
+
+/// One line with drives under a virtual clock.
+#[derive(Debug)]
+pub struct Rig {
+    line: BenchLine,
+    framing: Framing,
+    bus: Bus,
+    link: LinkId,
+    now: Instant,
+    events: Vec<Event>,
+}
+
+impl Rig {
+    /// A line with one embedded model on it, as it leaves the factory and ready.
+    ///
+    /// # Errors
+    /// If there is no such model.
+    pub fn builtin(name: &str) -> Result<Self, Vec<Problem>> {
+        let (_, text) = BuiltinLibrary
+            .fetch(name)
+            .map_err(|what| vec![Problem::value(Default::default(), what)])?;
+        Self::model(&text, &Choices::new(), &DeviceSpec::default())
+    }
+
+    /// A line with one drive of the model in `text`.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the model or the wishes.
+    pub fn model(text: &str, choices: &Choices, spec: &DeviceSpec) -> Result<Self, Vec<Problem>> {
+        let model = Arc::new(load(text, choices)?);
+        let device = Device::new(model, spec).map_err(|problems| {
+            let problem = |it: crate::bench::SpecProblem| {
+                Problem::value(Default::default(), it.what).advise_if(it.advice)
+            };
+            problems.into_iter().map(problem).collect::<Vec<_>>()
+        })?;
+        let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
+        let (name, port) = ("line".into(), PortSpec::Pty(None));
+        Ok(Self::line(BenchLine { name, port, wire, devices: vec![device] }))
+    }
+
+    /// The first line of a bench file. Its port is not opened.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the file.
+    pub fn bench(text: &str, library: &dyn Library) -> Result<Self, Vec<Problem>> {
+        let Bench { lines, .. } = crate::bench::parse(text, library)?;
+        let line = lines.into_iter().next();
+        Ok(Self::line(line.expect("a bench that was read has a line")))
+    }
+
+    /// A line as a bench describes it, with its framing, initialised.
+    pub fn line(line: BenchLine) -> Self {
+        let framing = line.wire.framing(1.0);
+        Self::framed(line, framing)
+    }
+
+    /// The same line with another framing. Its clock starts anew.
+    #[must_use]
+    pub fn with_framing(self, framing: Framing) -> Self {
+        Self::framed(self.line, framing)
+    }
+
+    fn framed(line: BenchLine, framing: Framing) -> Self {
+        let mut bus = line.bus();
+        let link = bus.open(framing);
+        let now = Instant::ZERO;
+        let mut rig = Self { line, framing, bus, link, now, events: Vec::new() };
+        let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
+        let ready = ready.max().unwrap_or_default();
+        rig.advance(ready);
+        rig
+    }
+
+    /// The drives as they were before anything happened, and the framing of their line.
+    #[cfg(feature = "cli")]
+    pub(super) fn into_bus(self) -> (Bus, Framing) {
+        (self.line.bus(), self.framing)
+    }
+
+    /// How the line is set.
+    pub fn settings(&self) -> Settings {
+        self.line.wire.settings
+    }
+
+    /// The time.
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Lets time pass, and gives back what came meanwhile.
+    pub fn advance(&mut self, by: Duration) -> Vec<u8> {
+        self.now += by;
+        self.bus.advance_to(self.now);
+        self.drain()
+    }
+
+    /// Sends the frame `request` (unit, function, data in hex; the CRC is added) and gives back the answer
+    /// without its CRC, empty for silence.
+    ///
+    /// # Panics
+    /// If `request` is not hex, or the answer is not one RTU frame.
+    pub fn ask(&mut self, request: &str) -> String {
+        let mut bytes = super::hex(request).expect("a request in hex");
+        bytes.extend(crc16(&bytes).to_le_bytes());
+        let answer = self.send(&bytes);
+        if answer.is_empty() {
+            return String::new();
+        }
+        rtu::decode(&answer).expect("an answer with its CRC");
+        super::to_hex(&answer[..answer.len() - 2])
+    }
+
+    /// Puts `bytes` on the line, lets it fall silent, and gives back what came.
+    pub fn send(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.bus.receive(self.now, self.link, bytes);
+        let mut answer = self.drain();
+        if answer.is_empty() {
+            // Silence ends what did not end by itself.
+            while let Some(at) = self.silence() {
+                self.now = self.now.max(at);
+                self.bus.advance_to(self.now);
+                answer.extend(self.drain());
+            }
+        }
+        answer
+    }
+
+    /// Puts `bytes` on the line and gives back what comes at once.
+    pub fn push(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.bus.receive(self.now, self.link, bytes);
+        self.drain()
+    }
+
+    /// Does something to the drives.
+    ///
+    /// # Errors
+    /// If there is no such drive, terminal or alarm.
+    pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
+        let reply = self.bus.command(self.now, command);
+        self.drain();
+        reply.map(|_| ())
+    }
+
+    /// The first drive of the line.
+    pub fn drive(&self) -> &Drive {
+        self.bus.drive(DriveId(0))
+    }
+
+    /// The drive that answers to `unit`.
+    pub fn unit(&self, unit: u8) -> Option<&Drive> {
+        self.bus.find(unit).map(|id| self.bus.drive(id))
+    }
+
+    /// The line itself.
+    pub fn bus(&self) -> &Bus {
+        &self.bus
+    }
+
+    /// Everything that happened so far.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// The log so far, as people read it.
+    pub fn log(&self) -> String {
+        self.events.iter().map(|event| crate::log::text::line(event, &self.bus) + "\n").collect()
+    }
+
+    fn silence(&self) -> Option<Instant> {
+        let wake = self.bus.poll_at()?;
+        matches!(wake.reason, crate::bus::WakeReason::Silence(_)).then_some(wake.at)
+    }
+
+    fn drain(&mut self) -> Vec<u8> {
+        let mut sent = Vec::new();
+        while let Some(output) = self.bus.poll_output() {
+            match output {
+                Output::Transmit { frame, .. } => sent.extend_from_slice(&frame),
+                Output::Event(event) => self.events.push(event),
+                Output::Close(_) => {}
+            }
+        }
+        sent
+    }
+}

@@ -1,0 +1,208 @@
+//! Plays a transcript against drives under the virtual clock.
+
+use super::Failure;
+use super::script::{Check, DriveLine, Script, Step, integer};
+use crate::bench::{BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, match_line};
+use crate::bus::Command;
+use crate::drive::Drive;
+use crate::event::DriveId;
+use crate::model::load;
+use crate::testkit::{Rig, to_hex};
+use crate::wire::{ascii, rtu};
+use crate::words::{AlarmCause, Output, Quantity, Word};
+use std::sync::Arc;
+
+/// Plays the transcript in `text`.
+///
+/// # Errors
+/// The first line that did not come out as it says, with the log.
+pub fn run(text: &str, library: &dyn Library) -> Result<(), Failure> {
+    let script = Script::parse(text)?;
+    let line = line(&script, library)?;
+    let mut player =
+        Player { ascii: line.wire.ascii, rig: Rig::line(line), pending: None, told: 0 };
+    for (number, step) in &script.steps {
+        let played = player.settle(step).and_then(|()| player.play(*number, step));
+        played.map_err(|what| player.failure(*number, what))?;
+    }
+    let last = script.steps.last().map_or(1, |(number, _)| *number);
+    player.settle(&Step::Log(String::new())).map_err(|what| player.failure(last, what))
+}
+
+fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
+    let mut devices = Vec::new();
+    for drive in &script.drives {
+        devices.push(device(drive, library).map_err(|what| Failure { line: drive.line, what })?);
+    }
+    let wire = WireSpec::of(&devices, script.settings, script.ascii, script.strict);
+    for (device, drive) in devices.iter_mut().zip(&script.drives) {
+        let matched = match_line(device, wire.settings, wire.ascii);
+        matched.map_err(|what| Failure { line: drive.line, what })?;
+    }
+    Ok(BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices })
+}
+
+fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
+    let (file, text) = library.fetch(&drive.model)?;
+    let model =
+        load(&text, &drive.options).map_err(|problems| format!("{file}: {}", problems[0]))?;
+    let spec = DeviceSpec {
+        unit: drive.unit,
+        set: drive.set.clone(),
+        switches: drive.switches,
+        terminals: drive.terminals.clone(),
+        position: drive.position,
+    };
+    Device::new(Arc::new(model), &spec).map_err(|problems| problems[0].what.clone())
+}
+
+struct Player {
+    rig: Rig,
+    ascii: bool,
+    /// A request whose answer has not been looked at: what was asked and what came.
+    pending: Option<(Option<Vec<u8>>, Vec<u8>)>,
+    /// Characters of the log that `log` steps have passed.
+    told: usize,
+}
+
+impl Player {
+    /// An answer that no step looks at must be an echo, or silence to a broadcast.
+    fn settle(&mut self, next: &Step) -> Result<(), String> {
+        if matches!(next, Step::Answer(_) | Step::Bytes(_)) {
+            return Ok(());
+        }
+        match self.pending.take() {
+            Some((Some(echo), got)) if got != echo => {
+                Err(format!("expected an echo\n  want {}\n  got  {}", to_hex(&echo), to_hex(&got)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn play(&mut self, _number: usize, step: &Step) -> Result<(), String> {
+        match step {
+            Step::Ask(unit, pdu) => {
+                let unit = unit.unwrap_or_else(|| self.rig.drive().unit());
+                let frame = self.frame(unit, pdu);
+                let got = self.rig.send(&frame);
+                let echo =
+                    if unit == crate::wire::BROADCAST { Vec::new() } else { self.echo(unit, pdu) };
+                self.pending = Some((Some(echo), got));
+            }
+            Step::Send(bytes) => {
+                let got = self.rig.send(bytes);
+                self.pending = Some((None, got));
+            }
+            Step::Answer(want) => {
+                let got = self.take_answer()?;
+                let unit = if self.ascii { ascii_unit(&got) } else { got.first().copied() };
+                let frame = |pdu: &Vec<u8>| self.frame(unit.unwrap_or(0), pdu);
+                same(want.as_ref().map(frame).unwrap_or_default(), got)?;
+            }
+            Step::Bytes(want) => {
+                let got = self.take_answer()?;
+                same(want.clone().unwrap_or_default(), got)?;
+            }
+            Step::Wait(by) => {
+                let got = self.rig.advance(*by);
+                same(Vec::new(), got)?;
+            }
+            Step::Look(unit, checks) => {
+                let drive = match unit {
+                    None => self.rig.drive(),
+                    Some(unit) => {
+                        self.rig.unit(*unit).ok_or(format!("nobody answers to unit {unit}"))?
+                    }
+                };
+                checks.iter().try_for_each(|check| look(drive, check))?;
+            }
+            Step::Do(words) => self.act(words)?,
+            Step::Log(want) => {
+                let log = self.rig.log();
+                let new = &log[self.told..];
+                if !new.contains(want.as_str()) {
+                    return Err(format!(
+                        "the log does not say `{want}`; since then it said\n{new}"
+                    ));
+                }
+                self.told = log.len();
+            }
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, words: &[String]) -> Result<(), String> {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let drive = DriveId(0);
+        let command = match words.as_slice() {
+            ["power_cycle"] => Command::PowerCycle { drive },
+            ["raise", cause] => {
+                let cause = AlarmCause::parse(cause).ok_or(format!("no alarm cause `{cause}`"))?;
+                Command::Raise { drive, cause }
+            }
+            ["terminal", name, level @ ("on" | "off")] => {
+                let terminals = self.rig.drive().model().wiring.input_terminals.as_ref();
+                let index =
+                    terminals.and_then(|it| (0..it.functions.len()).find(|i| it.name(*i) == *name));
+                let index = index.ok_or(format!("no terminal `{name}`"))? as u8;
+                Command::Terminal { drive, index, signal: *level == "on" }
+            }
+            _ => return Err("write power_cycle, raise CAUSE, or terminal NAME on|off".into()),
+        };
+        self.rig.command(command).map_err(|error| error.to_string())
+    }
+
+    fn take_answer(&mut self) -> Result<Vec<u8>, String> {
+        self.pending.take().map(|(_, got)| got).ok_or("nothing was asked".into())
+    }
+
+    fn frame(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
+        match self.ascii {
+            true => ascii::encode(unit, pdu).to_vec(),
+            false => rtu::encode(unit, pdu).to_vec(),
+        }
+    }
+
+    /// The answer that only repeats: of a 0x10 request its head.
+    fn echo(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
+        match pdu.first() {
+            Some(&crate::wire::function::WRITE_MANY) => self.frame(unit, &pdu[..pdu.len().min(5)]),
+            _ => self.frame(unit, pdu),
+        }
+    }
+
+    fn failure(&self, line: usize, what: String) -> Failure {
+        Failure { line, what: format!("{what}\n--- log\n{}", self.rig.log()) }
+    }
+}
+
+fn ascii_unit(frame: &[u8]) -> Option<u8> {
+    u8::from_str_radix(std::str::from_utf8(frame.get(1..3)?).ok()?, 16).ok()
+}
+
+fn same(want: Vec<u8>, got: Vec<u8>) -> Result<(), String> {
+    let text = |bytes: &[u8]| if bytes.is_empty() { "silence".into() } else { to_hex(bytes) };
+    match want == got {
+        true => Ok(()),
+        false => Err(format!("wrong answer\n  want {}\n  got  {}", text(&want), text(&got))),
+    }
+}
+
+fn look(drive: &Drive, check: &Check) -> Result<(), String> {
+    let Check { name, want } = check;
+    let row = drive.model().map.find(name);
+    let got = if let Some(signal) = Output::parse(name) {
+        if drive.output(signal) { "on".to_owned() } else { "off".to_owned() }
+    } else if let Some(quantity) = Quantity::parse(name) {
+        drive.quantity(quantity).to_string()
+    } else if let Some(row) = row {
+        drive.model().map.row(row).kind.value(drive.show(row)).to_string()
+    } else {
+        return Err(format!("no signal, quantity or register `{name}`"));
+    };
+    let as_number = integer(want).map(|number| number.to_string());
+    match got == *want || Some(&got) == as_number.as_ref() {
+        true => Ok(()),
+        false => Err(format!("{name} is {got}, not {want}")),
+    }
+}
