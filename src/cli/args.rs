@@ -1,0 +1,135 @@
+//! The flags, as close to the command line as possible.
+
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// An emulator for Modbus motor drives.
+#[derive(Debug, Parser)]
+#[command(version, about, propagate_version = true, max_term_width = 100)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Emulate drives
+    Run(Box<RunArgs>),
+    /// List the built-in models and the products they stand for
+    Models,
+    /// Print a model's register map, or one row of it
+    Show(ShowArgs),
+    /// Validate models and benches: every problem, with line and caret
+    Check(CheckArgs),
+    /// Print the JSON Schema of a file format, for editors
+    Schema(SchemaArgs),
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct RunArgs {
+    /// A model, a product, a model file, or a bench file
+    #[arg(value_name = "MODEL | BENCH.yaml")]
+    pub target: Option<String>,
+    /// Unit address (default: the model's)
+    #[arg(short = 'a', long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=247))]
+    pub unit: Option<u8>,
+    /// Own pseudo-terminal; LINK becomes a symlink to it for the run (default)
+    #[arg(long, value_name = "LINK", num_args = 0..=1, group = "port")]
+    pub pty: Option<Option<PathBuf>>,
+    /// A real serial port
+    #[arg(long, value_name = "DEVICE", group = "port")]
+    pub serial: Option<String>,
+    /// Modbus TCP (MBAP); port 0 picks a free one
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:5020", group = "port")]
+    pub tcp: Option<String>,
+    /// Serial frames over TCP
+    #[arg(long, value_name = "ADDR", group = "port")]
+    pub rtu_over_tcp: Option<String>,
+    /// ASCII framing instead of RTU
+    #[arg(long)]
+    pub ascii: bool,
+    /// Bits per second (default: what the model's own parameters say)
+    #[arg(short = 'b', long, value_name = "N")]
+    pub baud: Option<u32>,
+    /// Data bits
+    #[arg(short = 'd', long, value_name = "7|8", value_parser = clap::value_parser!(u8).range(7..=8))]
+    pub data_bits: Option<u8>,
+    /// Parity
+    #[arg(short = 'P', long, value_name = "none|even|odd")]
+    pub parity: Option<ParityArg>,
+    /// Stop bits
+    #[arg(short = 's', long, value_name = "1|2", value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub stop_bits: Option<u8>,
+    /// A model option (crc_error=silent) or a register's start value (P09.11=1); repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Seed of the run (default: drawn and printed)
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Emulated seconds per wall second
+    #[arg(long, value_name = "X", default_value_t = 1.0)]
+    pub rate: f64,
+    /// Written atomically when every port is open: one JSON object
+    #[arg(long, value_name = "FILE")]
+    pub ready_file: Option<PathBuf>,
+    /// The event log on stdout: one line per event
+    #[arg(long, value_name = "text|json", default_value = "text")]
+    pub format: LogFormatArg,
+    /// The same log as JSON lines
+    #[arg(long, value_name = "FILE")]
+    pub log_file: Option<PathBuf>,
+    /// Only warnings and errors on stderr
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ParityArg {
+    None,
+    Even,
+    Odd,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LogFormatArg {
+    Text,
+    Json,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct ShowArgs {
+    /// A model, a product, or a model file
+    pub model: String,
+    /// One row: its name, or its address (0x0304, 0304H, 772)
+    #[arg(value_name = "ROW|ADDR")]
+    pub row: Option<String>,
+    /// How to print it
+    #[arg(long, default_value = "table")]
+    pub format: TableFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TableFormat {
+    Table,
+    Markdown,
+    Json,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct CheckArgs {
+    /// Model and bench files
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct SchemaArgs {
+    /// Which file format
+    pub format: SchemaFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SchemaFormat {
+    Model,
+    Bench,
+}

@@ -1,0 +1,50 @@
+//! `drivemu check`: every problem of every file.
+
+use super::args::CheckArgs;
+use super::output::{complain, print};
+use super::{Failure, INVALID};
+use drivemu::bench::{kind_of, parse};
+use drivemu::model::check as check_model;
+use drivemu::problem::Problem;
+use drivemu::problem::render::render;
+use drivemu::shell::FileLibrary;
+use std::path::Path;
+
+pub fn check(args: &CheckArgs) -> Result<(), Failure> {
+    let mut bad = 0;
+    for file in &args.files {
+        let name = file.display().to_string();
+        let text = match std::fs::read_to_string(file) {
+            Ok(text) => text,
+            Err(error) => {
+                complain(&format!("{name}: {error}"));
+                bad += 1;
+                continue;
+            }
+        };
+        let (kind, problems) = problems(file, &text);
+        match problems.as_slice() {
+            [] => print(&format!("{name}: a valid {kind}\n")),
+            problems => {
+                print(&render(problems, &name, &text));
+                bad += 1;
+            }
+        }
+    }
+    match bad {
+        0 => Ok(()),
+        _ => {
+            let text = format!("{bad} of {} file(s) invalid", args.files.len());
+            Err(Failure { code: INVALID, text })
+        }
+    }
+}
+
+fn problems(file: &Path, text: &str) -> (&'static str, Vec<Problem>) {
+    let kind = kind_of(text);
+    if kind == "bench" {
+        let base = file.parent().unwrap_or(Path::new(""));
+        return (kind, parse(text, &FileLibrary::new(base)).err().unwrap_or_default());
+    }
+    (kind, check_model(text))
+}

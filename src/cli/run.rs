@@ -1,0 +1,183 @@
+//! `drivemu run`: flags or a bench file become a bench, and the shell runs it.
+
+use super::args::{LogFormatArg, ParityArg, RunArgs};
+use super::{FAILED, Failure, INVALID, NO_PORT};
+use drivemu::bench::{
+    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, kind_of, match_line, parse,
+};
+use drivemu::line::{Parity, Settings};
+use drivemu::model::builtin::Builtin;
+use drivemu::model::{Choices, Model, load};
+use drivemu::problem::render::render;
+use drivemu::shell::{
+    Diagnostics, FileLibrary, LogFormat, OpenError, RunOptions, diagnose, run as run_bench,
+};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub fn run(args: RunArgs) -> Result<(), Failure> {
+    diagnose(if args.quiet { Diagnostics::Quiet } else { Diagnostics::Normal });
+    if !(args.rate.is_finite() && args.rate > 0.0 && args.rate <= 1e6) {
+        return Err(Failure::invalid("--rate takes a number above 0, up to 1000000"));
+    }
+    let (bench, base) = bench(&args)?;
+    let seed = args.seed.or(bench.seed).unwrap_or_else(rand::random);
+    let options = RunOptions {
+        seed,
+        rate: args.rate,
+        format: match args.format {
+            LogFormatArg::Text => LogFormat::Text,
+            LogFormatArg::Json => LogFormat::Json,
+        },
+        log_file: args.log_file,
+        ready_file: args.ready_file,
+        base,
+    };
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
+    runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
+        OpenError::Port(_) => Failure { code: NO_PORT, text: error.to_string() },
+        OpenError::File(..) => Failure { code: FAILED, text: error.to_string() },
+    })
+}
+
+/// The bench to run, and what its paths are relative to.
+fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
+    let target = args.target.as_deref().unwrap_or(Builtin::default_name());
+    if let (None, Some(Some(link))) = (&args.target, &args.pty)
+        && link.to_str().is_some_and(|name| Builtin::find(name).is_some())
+    {
+        let link = link.display();
+        let text = format!("`--pty {link}` makes a link called {link}; write `run {link} --pty`");
+        return Err(Failure::invalid(text));
+    }
+    let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
+    if kind_of(&text) == "bench" {
+        refuse_flags_of_a_line(args)?;
+        let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();
+        let bench = parse(&text, &FileLibrary::new(&base));
+        let bench = bench.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+        return Ok((bench, base));
+    }
+    let (choices, set) = wishes(args, &file, &text)?;
+    let model = load(&text, &choices)
+        .map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+    let line = line(args, Arc::new(model), set)?;
+    Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new()))
+}
+
+/// A bench file says these things itself.
+fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
+    let flags = [
+        ("--unit", args.unit.is_some()),
+        ("--pty", args.pty.is_some()),
+        ("--serial", args.serial.is_some()),
+        ("--tcp", args.tcp.is_some()),
+        ("--rtu-over-tcp", args.rtu_over_tcp.is_some()),
+        ("--ascii", args.ascii),
+        ("--baud", args.baud.is_some()),
+        ("--data-bits", args.data_bits.is_some()),
+        ("--parity", args.parity.is_some()),
+        ("--stop-bits", args.stop_bits.is_some()),
+        ("--set", !args.set.is_empty()),
+    ];
+    match flags.iter().find(|(_, given)| *given) {
+        Some((flag, _)) => {
+            let text = format!("{flag} goes with a model; a bench file says such things itself");
+            Err(Failure::invalid(text))
+        }
+        None => Ok(()),
+    }
+}
+
+/// `--set` speaks of options and of registers: sorts them out.
+fn wishes(
+    args: &RunArgs,
+    file: &str,
+    text: &str,
+) -> Result<(Choices, std::collections::BTreeMap<String, i64>), Failure> {
+    let model = load(text, &Choices::new());
+    let model = model.map_err(|problems| Failure::invalid(render(&problems, file, text)))?;
+    let (mut choices, mut set) = (Choices::new(), std::collections::BTreeMap::new());
+    for wish in &args.set {
+        let Some((key, value)) = wish.split_once('=') else {
+            return Err(Failure::invalid(format!("--set {wish}: write KEY=VALUE")));
+        };
+        if let Some(option) = model.options.iter().find(|option| option.name == key) {
+            if !option.choices.iter().any(|choice| choice == value) {
+                let all = option.choices.join(", ");
+                return Err(Failure::invalid(format!("--set {wish}: {key} takes {all}")));
+            }
+            choices.insert(key.into(), value.into());
+            continue;
+        }
+        let number = integer(value).ok_or_else(|| {
+            let text = format!("--set {wish}: `{value}` is no number, and {key} is no option");
+            Failure::invalid(text)
+        })?;
+        set.insert(key.into(), number);
+    }
+    Ok((choices, set))
+}
+
+fn integer(text: &str) -> Option<i64> {
+    match text.strip_prefix("0x") {
+        Some(hex) => i64::from_str_radix(hex, 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
+fn line(
+    args: &RunArgs,
+    model: Arc<Model>,
+    set: std::collections::BTreeMap<String, i64>,
+) -> Result<BenchLine, Failure> {
+    let spec = DeviceSpec { unit: args.unit, set, ..DeviceSpec::default() };
+    let mut device = Device::new(model, &spec).map_err(|problems| {
+        let sentence = |it: &drivemu::bench::SpecProblem| match &it.advice {
+            Some(advice) => format!("{} ({advice})\n", it.what),
+            None => format!("{}\n", it.what),
+        };
+        Failure::invalid(problems.iter().map(sentence).collect::<String>())
+    })?;
+    let port = port(args);
+    let ascii = args.ascii.then_some(true);
+    let own = WireSpec::of(std::slice::from_ref(&device), None, ascii, false);
+    let settings = settings(args, own.settings);
+    let wire = WireSpec { settings, ..own };
+    if !matches!(port, PortSpec::Tcp(_)) {
+        match_line(&mut device, wire.settings, wire.ascii).map_err(Failure::invalid)?;
+    } else if args.ascii || settings != own.settings {
+        return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
+    }
+    Ok(BenchLine { name: "line".into(), port, wire, devices: vec![device] })
+}
+
+fn port(args: &RunArgs) -> PortSpec {
+    if let Some(path) = &args.serial {
+        return PortSpec::Serial(path.clone());
+    }
+    if let Some(addr) = &args.tcp {
+        return PortSpec::Tcp(addr.clone());
+    }
+    if let Some(addr) = &args.rtu_over_tcp {
+        return PortSpec::RtuOverTcp(addr.clone());
+    }
+    let link = args.pty.clone().flatten();
+    PortSpec::Pty(link.map(|link| link.display().to_string()))
+}
+
+fn settings(args: &RunArgs, own: Settings) -> Settings {
+    let mut settings = own;
+    settings.baud = args.baud.unwrap_or(own.baud);
+    let format = &mut settings.format;
+    format.data_bits = args.data_bits.unwrap_or(format.data_bits);
+    format.stop_bits = args.stop_bits.unwrap_or(format.stop_bits);
+    format.parity = match args.parity {
+        None => format.parity,
+        Some(ParityArg::None) => Parity::None,
+        Some(ParityArg::Even) => Parity::Even,
+        Some(ParityArg::Odd) => Parity::Odd,
+    };
+    settings
+}

@@ -1,0 +1,16 @@
+//! `drivemu schema`: JSON Schema of the file formats.
+
+use super::args::{SchemaArgs, SchemaFormat};
+use super::output::print;
+use super::{FAILED, Failure};
+
+pub fn schema(args: &SchemaArgs) -> Result<(), Failure> {
+    let schema = match args.format {
+        SchemaFormat::Model => drivemu::model::raw::schema(),
+        SchemaFormat::Bench => drivemu::bench::raw::schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema);
+    let text = text.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
+    print(&format!("{text}\n"));
+    Ok(())
+}

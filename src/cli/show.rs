@@ -1,0 +1,235 @@
+//! `drivemu show`: the register map, or one row of it.
+
+use super::Failure;
+use super::args::{ShowArgs, TableFormat};
+use super::output::print;
+use drivemu::bench::Library;
+use drivemu::model::{Access, Applies, Choices, Kind, Model, Reaction, Row, RowId, Shows, load};
+use drivemu::problem::render::render;
+use drivemu::shell::FileLibrary;
+use drivemu::words::Word;
+use serde_json::{Value, json};
+
+pub fn show(args: &ShowArgs) -> Result<(), Failure> {
+    let (file, text) = FileLibrary::new("").fetch(&args.model).map_err(Failure::invalid)?;
+    let model = load(&text, &Choices::new())
+        .map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+    let rows: Vec<RowId> = match &args.row {
+        Some(name) => vec![find(&model, name)?],
+        None => model.map.rows().map(|(id, _)| id).collect(),
+    };
+    match (args.format, args.row.is_some()) {
+        (TableFormat::Json, _) => {
+            let rows: Vec<Value> = rows.iter().map(|row| object(&model, *row)).collect();
+            print(&format!("{:#}\n", Value::Array(rows)));
+        }
+        (TableFormat::Markdown, _) => print(&markdown(&model, &rows)),
+        (TableFormat::Table, false) => print(&table(&model, &rows)),
+        (TableFormat::Table, true) => print(&card(&model, rows[0])),
+    }
+    Ok(())
+}
+
+fn find(model: &Model, name: &str) -> Result<RowId, Failure> {
+    model.map.find(name).ok_or_else(|| {
+        let ids = model.map.rows().map(|(_, row)| row.id.as_str());
+        let advice = drivemu::problem::suggest::did_you_mean(name, ids);
+        let advice = advice.map(|it| format!(" ({it})")).unwrap_or_default();
+        Failure::invalid(format!("{} has no row `{name}`{advice}", model.name))
+    })
+}
+
+fn table(model: &Model, rows: &[RowId]) -> String {
+    let head = ["address", "row", "type", "access", "range", "init", "unit", "name", "moves"];
+    let mut lines = vec![head.map(str::to_owned)];
+    for id in rows {
+        let row = model.map.row(*id);
+        lines.push([
+            format!("0x{:04X}", row.at),
+            row.id.clone(),
+            kind(row.kind).into(),
+            access(row.access).into(),
+            row.range_text(),
+            row.kind.value(row.init).to_string(),
+            row.unit_text.clone(),
+            row.name.clone(),
+            wired(model, *id).unwrap_or_else(|| "-".into()),
+        ]);
+    }
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max();
+    let widths: Vec<usize> = (0..head.len()).map(|column| width(column).unwrap_or(0)).collect();
+    let mut out = String::new();
+    for line in &lines {
+        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+        out.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+fn markdown(model: &Model, rows: &[RowId]) -> String {
+    let mut out = String::from(
+        "| address | row | name | 中文 | type | access | range | init | unit | applies | section | wired to |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for id in rows {
+        let row = model.map.row(*id);
+        let cells = [
+            format!("0x{:04X}", row.at),
+            row.id.clone(),
+            row.name.clone(),
+            row.zh.clone(),
+            kind(row.kind).into(),
+            access(row.access).into(),
+            row.range_text(),
+            row.kind.value(row.init).to_string(),
+            row.unit_text.clone(),
+            applies(row.applies).into(),
+            row.see.clone(),
+            wired(model, *id).unwrap_or_default(),
+        ];
+        out.push_str(&format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | ")));
+    }
+    out
+}
+
+/// Everything about one row.
+fn card(model: &Model, id: RowId) -> String {
+    let row = model.map.row(id);
+    let mut out = format!("{}  0x{:04X}  {}\n", row.id, row.at, row.name);
+    let mut line = |name: &str, text: &str| {
+        if !text.is_empty() {
+            out.push_str(&format!("  {name:<10}{text}\n"));
+        }
+    };
+    line("zh", &row.zh);
+    line("type", kind(row.kind));
+    line("access", access(row.access));
+    line("range", &row.range_text());
+    line("init", &row.kind.value(row.init).to_string());
+    line("unit", &row.unit_text);
+    line("applies", applies(row.applies));
+    line("kept", kept(model, row));
+    line("section", &format!("{} ({})", row.see, model.manual));
+    line(
+        "wired to",
+        wired(model, id).as_deref().unwrap_or("nothing: stored and read back (sim: none)"),
+    );
+    line("note", &row.note);
+    line("assumed", &row.assumed);
+    for window in model.map.windows().iter().filter(|window| window.base != 0) {
+        if let Some(address) = row
+            .at
+            .checked_add(window.base)
+            .filter(|_| (window.span.0..=window.span.1).contains(&row.at))
+        {
+            line("also at", &format!("0x{address:04X} (window {})", window.name));
+        }
+    }
+    for (value, meaning) in &row.values {
+        line(&format!("= {value}"), meaning);
+    }
+    for (bit, meaning) in &row.bits {
+        line(&format!("bit {bit}"), meaning);
+    }
+    out
+}
+
+fn object(model: &Model, id: RowId) -> Value {
+    let row = model.map.row(id);
+    json!({
+        "address": row.at,
+        "row": row.id,
+        "name": row.name,
+        "zh": row.zh,
+        "type": kind(row.kind),
+        "access": access(row.access),
+        "range": row.spans,
+        "init": row.kind.value(row.init),
+        "unit": row.unit_text,
+        "applies": applies(row.applies),
+        "section": row.see,
+        "values": row.values,
+        "bits": row.bits,
+        "note": row.note,
+        "assumed": row.assumed,
+        "wired_to": wired(model, id),
+    })
+}
+
+/// What the row is wired to, or `None` if it moves nothing.
+fn wired(model: &Model, id: RowId) -> Option<String> {
+    if model.map.row(id).inert {
+        return None;
+    }
+    let shows = model.wiring.shows(id).map(|shows| match shows {
+        Shows::Quantity(quantity) => quantity.name().to_owned(),
+        Shows::Bits(bits) => bits
+            .iter()
+            .map(|(bit, shown)| {
+                format!(
+                    "bit {bit} {}{}",
+                    if shown.inverted { "not " } else { "" },
+                    shown.signal.name()
+                )
+            })
+            .collect::<Vec<_>>()
+            .join(", "),
+        Shows::OutputWord(word) => format!("output word {}", word + 1),
+        Shows::InputTerminals(_) => "input terminals".into(),
+        Shows::OutputTerminals(_) => "output terminals".into(),
+    });
+    let reaction = || match model.wiring.reaction(id) {
+        Reaction::None => "settings".to_owned(),
+        Reaction::Inputs => "input signals".into(),
+        Reaction::InputWord(word) => format!("input word {}", word + 1),
+        Reaction::Command(index) => {
+            let actions = &model.wiring.commands[usize::from(index)].actions;
+            let action = |(value, action): &(i64, drivemu::words::Action)| {
+                format!("{value} {}", action.name())
+            };
+            actions.iter().map(action).collect::<Vec<_>>().join(", ")
+        }
+        Reaction::Unit => "unit address".into(),
+    };
+    Some(shows.unwrap_or_else(reaction))
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::U16 => "u16",
+        Kind::I16 => "i16",
+        Kind::U32 => "u32",
+        Kind::I32 => "i32",
+    }
+}
+
+fn access(access: Access) -> &'static str {
+    match access {
+        Access::Read => "r",
+        Access::Write => "w",
+        Access::Both => "rw",
+    }
+}
+
+fn applies(applies: Applies) -> &'static str {
+    match applies {
+        Applies::Now => "now",
+        Applies::AtStop => "at stop",
+        Applies::PowerOn => "at power-on",
+    }
+}
+
+fn kept(model: &Model, row: &Row) -> &'static str {
+    let direct = model
+        .map
+        .windows()
+        .iter()
+        .any(|window| window.base == 0 && window.layer == drivemu::model::Layer::RamAndStore);
+    match (row.access, row.volatile, direct) {
+        (Access::Read, ..) => "",
+        (_, true, _) => "never",
+        (_, false, true) => "with every write",
+        (_, false, false) => "when stored",
+    }
+}

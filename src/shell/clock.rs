@@ -1,0 +1,65 @@
+//! The wall clock, at a rate: the only file that asks what time it is.
+
+use crate::time::{Duration, Instant};
+
+/// Maps the wall to the emulated world.
+///
+/// It counts on tokio's clock, so that under `tokio::time::pause` the emulated world is paused too.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    start: tokio::time::Instant,
+    rate: f64,
+}
+
+impl Clock {
+    /// Starts now, with `rate` emulated seconds for each second of the wall.
+    pub fn start(rate: f64) -> Self {
+        Self { start: wall_now(), rate }
+    }
+
+    /// Emulated seconds for each second of the wall.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// The emulated time.
+    pub fn now(&self) -> Instant {
+        Instant::ZERO + wall_now().duration_since(self.start).mul_f64(self.rate)
+    }
+
+    /// Sleeps until the emulated time is `at`; for ever without one.
+    ///
+    /// It may wake a little early or late: whoever sleeps asks [`Clock::now`] again.
+    pub async fn until(&self, at: Option<Instant>) {
+        let Some(at) = at else { return std::future::pending().await };
+        let elapsed = at.since(Instant::ZERO).div_f64(self.rate);
+        match self.start.checked_add(elapsed) {
+            Some(wall) => tokio::time::sleep_until(wall).await,
+            None => std::future::pending().await,
+        }
+    }
+
+    /// Waits `time` of the wall, whatever the rate: for ports, which live out there.
+    #[allow(clippy::disallowed_methods)] // This is the clock.
+    pub async fn wall(time: Duration) {
+        tokio::time::sleep(time).await;
+    }
+}
+
+#[allow(clippy::disallowed_methods)] // This is the clock.
+fn wall_now() -> tokio::time::Instant {
+    tokio::time::Instant::now()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn the_rate_stretches_time() {
+        let clock = Clock::start(50.0);
+        clock.until(Some(Instant::from_millis(5000))).await;
+        let now = clock.now();
+        assert!(now >= Instant::from_millis(5000) && now < Instant::from_millis(5100), "{now}");
+    }
+}

@@ -1,0 +1,146 @@
+//! Writes the event log to stdout and to a file, from a thread of its own.
+//!
+//! A pipe that nobody reads must not stop a drive: lines queue up to a limit, then they are dropped and
+//! counted, and the log says how many when it can write again.
+
+use crate::bus::Bus;
+use crate::event::Event;
+use crate::log::{json, text};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::thread::JoinHandle;
+
+/// Lines that may wait for a slow reader.
+const QUEUE: usize = 65_536;
+
+/// What the log looks like on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LogFormat {
+    /// For people.
+    Text,
+    /// One JSON object a line.
+    Json,
+}
+
+/// The event log of a run.
+#[derive(Debug)]
+pub struct Logger {
+    format: LogFormat,
+    /// Several lines: each event says on which it was.
+    names: bool,
+    to_file: bool,
+    queue: Option<SyncSender<Entry>>,
+    dropped: u64,
+    writer: Option<JoinHandle<()>>,
+}
+
+struct Entry {
+    stdout: Option<String>,
+    file: Option<String>,
+}
+
+impl Logger {
+    /// Starts a log. `names`: should the text say on which line an event was?
+    ///
+    /// # Errors
+    /// If the file can't be created.
+    pub fn start(format: LogFormat, names: bool, file: Option<&Path>) -> io::Result<Self> {
+        let file = file.map(File::create).transpose()?;
+        let (queue, entries) = sync_channel(QUEUE);
+        let to_file = file.is_some();
+        let writer = std::thread::Builder::new()
+            .name("log".into())
+            .spawn(move || write(&entries, file.map(BufWriter::new)))?;
+        let (queue, writer) = (Some(queue), Some(writer));
+        Ok(Self { format, names, to_file, queue, dropped: 0, writer })
+    }
+
+    /// Logs an event of the line called `name`.
+    pub fn log(&mut self, event: &Event, name: &str, bus: &Bus) {
+        let object = || json::object(event, name, bus).to_string();
+        let file = self.to_file.then(object);
+        let stdout = match self.format {
+            LogFormat::Json => file.clone().unwrap_or_else(object),
+            LogFormat::Text => self.text(event, name, bus),
+        };
+        self.send(Entry { stdout: Some(stdout), file });
+    }
+
+    fn text(&self, event: &Event, name: &str, bus: &Bus) -> String {
+        let line = text::line(event, bus);
+        match (self.names, line.split_once(' ')) {
+            (true, Some((time, what))) => format!("{time} {name} {what}"),
+            _ => line,
+        }
+    }
+
+    fn send(&mut self, entry: Entry) {
+        let Some(queue) = &self.queue else { return };
+        if self.dropped > 0 {
+            let lost =
+                format!("{} lines of the log were lost: its reader is too slow", self.dropped);
+            let note = match self.format {
+                LogFormat::Text => lost.clone(),
+                LogFormat::Json => lost_object(&lost, self.dropped),
+            };
+            let file = self.to_file.then(|| lost_object(&lost, self.dropped));
+            if queue.try_send(Entry { stdout: Some(note), file }).is_err() {
+                self.dropped += 1;
+                return;
+            }
+            self.dropped = 0;
+        }
+        match queue.try_send(entry) {
+            Ok(()) => {}
+            Err(TrySendError::Full(_)) => self.dropped += 1,
+            Err(TrySendError::Disconnected(_)) => self.queue = None,
+        }
+    }
+}
+
+impl Drop for Logger {
+    /// Writes what is left. A reader that stopped reading would hold the end up, so if the queue is full
+    /// nobody waits for it.
+    fn drop(&mut self) {
+        let stuck = self.dropped > 0;
+        self.queue = None;
+        if let Some(writer) = self.writer.take().filter(|_| !stuck) {
+            let _ = writer.join();
+        }
+    }
+}
+
+fn lost_object(text: &str, count: u64) -> String {
+    serde_json::json!({"event": "log_lost", "lines": count, "text": text}).to_string()
+}
+
+fn write(entries: &Receiver<Entry>, mut file: Option<BufWriter<File>>) {
+    let mut stdout = Some(BufWriter::new(io::stdout()));
+    while let Ok(entry) = entries.recv() {
+        let mut next = Some(entry);
+        // One flush for all that has queued up meanwhile.
+        while let Some(entry) = next {
+            put(&mut stdout, entry.stdout);
+            put(&mut file, entry.file);
+            next = entries.try_recv().ok();
+        }
+        flush(&mut stdout);
+        flush(&mut file);
+    }
+}
+
+/// Writes a line. A reader that went away (`| head`) ends this output, not the drive.
+fn put<W: Write>(output: &mut Option<W>, line: Option<String>) {
+    let (Some(writer), Some(line)) = (output.as_mut(), line) else { return };
+    if writeln!(writer, "{line}").is_err() {
+        *output = None;
+    }
+}
+
+fn flush<W: Write>(output: &mut Option<W>) {
+    if output.as_mut().is_some_and(|writer| writer.flush().is_err()) {
+        *output = None;
+    }
+}

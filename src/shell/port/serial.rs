@@ -1,0 +1,299 @@
+//! A serial port that the system gives us: a USB adapter, a built-in UART, another program's pseudo-terminal.
+//!
+//! It can be unplugged at any time. However the system puts that (no bytes, `EIO`, `ENXIO`, `ENODEV`), it is
+//! told as one kind of error, `NotConnected`; the caller drops the port, waits and opens it again.
+//!
+//! The system may also take other settings than it was asked for, without a word: a pseudo-terminal has no
+//! parity. That is no error, since the line works; [`Serial::note`] says it.
+
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::FileTypeExt;
+
+use tokio::io::AsyncReadExt;
+use tokio_serial::{SerialPort, SerialStream};
+
+use super::tuning::{Tuning, is_pseudo_terminal};
+use super::{is_hang_up, said};
+
+/// An open serial port, ours alone.
+#[derive(Debug)]
+pub struct Serial {
+    stream: SerialStream,
+    path: String,
+    note: Option<String>,
+}
+
+impl Serial {
+    /// Opens a port: `data_bits` 7 or 8, `parity` `'N'`, `'E'` or `'O'`, `stop_bits` 1 or 2, no flow control.
+    ///
+    /// # Errors
+    /// `NotFound`, `PermissionDenied`, `ResourceBusy` (another program has it), `InvalidInput` (not a serial
+    /// port, or no such setting), or what else the system says; each as a sentence for the user.
+    ///
+    /// # Panics
+    /// Outside a Tokio runtime with I/O.
+    pub fn open(
+        path: &str,
+        baud: u32,
+        data_bits: u8,
+        parity: char,
+        stop_bits: u8,
+    ) -> io::Result<Self> {
+        let wanted = Tuning::new(baud, data_bits, parity, stop_bits)?;
+        // A plain file would open, and then fail in words that help nobody.
+        if std::fs::metadata(path).is_ok_and(|found| !found.file_type().is_char_device()) {
+            return Err(said(ErrorKind::InvalidInput, format!("{path} is not a serial port")));
+        }
+        let stream = wanted.open(path).map_err(|e| refusal(path, &e))?;
+        let mut serial = Self { stream, path: path.to_owned(), note: None };
+        serial.compare(wanted);
+        Ok(serial)
+    }
+
+    /// Moves the open port to other settings, at once: see [`Serial::unsent`].
+    ///
+    /// # Errors
+    /// `InvalidInput`, or what the system says; then some of the settings may have been taken.
+    pub fn retune(
+        &mut self,
+        baud: u32,
+        data_bits: u8,
+        parity: char,
+        stop_bits: u8,
+    ) -> io::Result<()> {
+        let wanted = Tuning::new(baud, data_bits, parity, stop_bits)?;
+        match wanted.apply(&mut self.stream) {
+            Err(e) if !is_pseudo_terminal(&self.path) => return Err(refusal(&self.path, &e)),
+            _ => self.compare(wanted),
+        }
+        Ok(())
+    }
+
+    /// What the port did not take as it was asked to, as a sentence for the user.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Bytes written that have not left yet. Wait for 0 before [`Serial::retune`]: what is still on its way
+    /// would leave at the new baud.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn unsent(&self) -> io::Result<u32> {
+        Ok(self.stream.bytes_to_write()?)
+    }
+
+    /// Waits for bytes; at least one arrives, unless `buf` is empty. Cancel-safe.
+    ///
+    /// # Errors
+    /// `NotConnected` when the port was unplugged.
+    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+        if buf.is_empty() {
+            return Ok(0);
+        }
+        let done = self.stream.read(buf).await;
+        self.some(done)
+    }
+
+    /// Takes what is waiting now; 0 means nothing is.
+    ///
+    /// # Errors
+    /// As for [`Serial::read`].
+    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+        if buf.is_empty() {
+            return Ok(0);
+        }
+        match self.stream.try_read(buf) {
+            Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),
+            done => self.some(done),
+        }
+    }
+
+    /// Sends an answer in one write and says how many of its bytes were taken; the rest is lost.
+    ///
+    /// # Errors
+    /// As for [`Serial::read`].
+    pub fn write_now(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.stream.try_write(bytes) {
+            Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),
+            Err(e) if is_hang_up(&e) => Err(self.unplugged()),
+            done => done,
+        }
+    }
+
+    /// A read of no bytes, and every hang-up, means the same.
+    fn some(&self, done: io::Result<usize>) -> io::Result<usize> {
+        match done {
+            Ok(0) => Err(self.unplugged()),
+            Err(e) if is_hang_up(&e) => Err(self.unplugged()),
+            done => done,
+        }
+    }
+
+    fn unplugged(&self) -> io::Error {
+        said(ErrorKind::NotConnected, format!("{} was unplugged", self.path))
+    }
+
+    /// Notes what the port says it has against what it was asked for.
+    fn compare(&mut self, wanted: Tuning) {
+        let got = Tuning::of(&self.stream, wanted);
+        self.note = (!got.serves(wanted)).then(|| {
+            let path = &self.path;
+            let why = if is_pseudo_terminal(path) {
+                " (a pseudo-terminal; bytes pass all the same)"
+            } else {
+                ""
+            };
+            format!("{path}: asked for {wanted}, it took {got}{why}")
+        });
+    }
+}
+
+fn refusal(path: &str, error: &tokio_serial::Error) -> io::Error {
+    use tokio_serial::ErrorKind as Kind;
+    let (kind, why) = match error.kind {
+        // The library's word for a port that is locked, whether by ioctl or by file lock.
+        Kind::NoDevice => (ErrorKind::ResourceBusy, "another program has it open"),
+        Kind::Io(ErrorKind::NotFound) => (ErrorKind::NotFound, "no such device"),
+        Kind::Io(ErrorKind::PermissionDenied) => (
+            ErrorKind::PermissionDenied,
+            "permission denied; add yourself to the group that owns it, usually dialout \
+             (sudo usermod -aG dialout $USER), and log in again",
+        ),
+        Kind::Io(kind) => (kind, &*error.description),
+        Kind::InvalidInput => (ErrorKind::InvalidInput, &*error.description),
+        Kind::Unknown => (ErrorKind::Other, &*error.description),
+    };
+    said(kind, format!("cannot open {path}: {why}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Pty;
+    use super::*;
+    use std::time::Duration;
+    use tokio::time::timeout;
+
+    fn pair() -> (Pty, Serial) {
+        let pty = Pty::open(None).unwrap();
+        let serial = open_8n1(pty.path().to_str().unwrap()).unwrap();
+        (pty, serial)
+    }
+
+    fn open_8n1(path: &str) -> io::Result<Serial> {
+        Serial::open(path, 19200, 8, 'N', 1)
+    }
+
+    async fn heard(serial: &mut Serial) -> io::Result<Vec<u8>> {
+        let mut buf = [0; 300];
+        let count = timeout(Duration::from_secs(2), serial.read(&mut buf)).await.unwrap()?;
+        Ok(buf[..count].to_vec())
+    }
+
+    #[tokio::test]
+    async fn passes_every_byte_untouched_both_ways() {
+        let (pty, mut serial) = pair();
+        let all: Vec<u8> = (0..=255).collect();
+        assert_eq!(pty.write_now(&all).unwrap(), 256);
+        let mut got = Vec::new();
+        while got.len() < all.len() {
+            got.extend(heard(&mut serial).await.unwrap());
+        }
+        assert_eq!(got, all);
+        assert_eq!(serial.try_read(&mut [0; 8]).unwrap(), 0, "nothing waits now");
+        assert_eq!(serial.read(&mut []).await.unwrap(), 0);
+
+        assert_eq!(serial.write_now(&all).unwrap(), 256);
+        let mut buf = [0; 300];
+        let mut got = Vec::new();
+        while got.len() < all.len() {
+            let count = timeout(Duration::from_secs(2), pty.read(&mut buf)).await.unwrap().unwrap();
+            got.extend_from_slice(&buf[..count]);
+        }
+        assert_eq!(got, all);
+        assert_eq!(serial.unsent().unwrap(), 0);
+    }
+
+    #[tokio::test]
+    async fn every_face_of_being_unplugged_is_not_connected() {
+        let (pty, mut serial) = pair();
+        drop(pty);
+        for _ in 0..2 {
+            let read = heard(&mut serial).await.unwrap_err();
+            assert_eq!(read.kind(), ErrorKind::NotConnected, "{read}");
+            assert!(read.to_string().ends_with("was unplugged"));
+            let try_read = serial.try_read(&mut [0; 8]).unwrap_err();
+            assert_eq!(try_read.kind(), ErrorKind::NotConnected, "{try_read}");
+            let write = serial.write_now(b"x").unwrap_err();
+            assert_eq!(write.kind(), ErrorKind::NotConnected, "{write}");
+        }
+    }
+
+    #[tokio::test]
+    async fn being_unplugged_wakes_a_read_that_waits() {
+        let (pty, mut serial) = pair();
+        let reading = tokio::spawn(async move { heard(&mut serial).await });
+        tokio::task::yield_now().await;
+        drop(pty);
+        assert_eq!(reading.await.unwrap().unwrap_err().kind(), ErrorKind::NotConnected);
+    }
+
+    #[tokio::test]
+    async fn a_reader_that_stops_is_not_waited_for() {
+        let (_pty, mut serial) = pair();
+        let mut taken = 0;
+        loop {
+            match serial.write_now(&[7; 256]).unwrap() {
+                0 => break,
+                count => taken += count,
+            }
+            assert!(taken < 10_000_000, "a full buffer must show");
+        }
+        assert!(taken >= 1024, "room for a few answers, found {taken}");
+    }
+
+    #[tokio::test]
+    async fn says_what_a_pseudo_terminal_did_not_take() {
+        let (pty, mut serial) = pair();
+        assert_eq!(serial.note(), None);
+        serial.retune(57600, 8, 'E', 2).unwrap();
+        let path = pty.path().display();
+        if cfg!(target_os = "linux") {
+            let note = serial.note().unwrap();
+            assert!(
+                note.starts_with(&format!("{path}: asked for 57600-8E2, it took 57600-8N2 (a ")),
+                "{note}"
+            );
+            assert_eq!(pty.master_settings().unwrap(), (57600, 2));
+        }
+        drop(serial);
+        let mut serial = Serial::open(pty.path().to_str().unwrap(), 9600, 8, 'E', 1).unwrap();
+        assert_eq!(serial.note().is_some(), cfg!(target_os = "linux"));
+        serial.retune(9600, 8, 'N', 1).unwrap();
+        assert_eq!(serial.note(), None);
+    }
+
+    #[tokio::test]
+    async fn refuses_in_clear_words() {
+        let (pty, _serial) = pair();
+        let path = pty.path().to_str().unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let file = file.path().to_str().unwrap();
+        for (path, kind, words) in [
+            (path, ErrorKind::ResourceBusy, "another program has it open"),
+            ("/dev/ttyNone9", ErrorKind::NotFound, "no such device"),
+            (file, ErrorKind::InvalidInput, "is not a serial port"),
+            ("/dev/null", ErrorKind::Other, "cannot open /dev/null: "),
+        ] {
+            let refused = open_8n1(path).unwrap_err();
+            assert_eq!(refused.kind(), kind, "{refused}");
+            let text = refused.to_string();
+            assert!(text.contains(words) && text.contains(path), "{text}");
+        }
+        let locked = tokio_serial::Error::new(
+            tokio_serial::ErrorKind::Io(ErrorKind::PermissionDenied),
+            "Permission denied",
+        );
+        assert!(refusal("/dev/ttyUSB0", &locked).to_string().contains("dialout"));
+    }
+}

@@ -1,0 +1,219 @@
+//! Runs a bench: opens all its ports, says so, serves them until somebody ends it.
+
+use super::clock::Clock;
+use super::logger::{LogFormat, Logger};
+use super::port::{Listener, Pty, Serial, Tty};
+use super::ready::{self, Endpoint, Ready, Unit};
+use super::serve::{Reopen, Served, serve_tcp, serve_tty};
+use super::stop;
+use crate::bench::{Bench, BenchLine, PortSpec};
+use crate::bus::Bus;
+use crate::line::{Framing, Parity, Settings};
+use std::cell::RefCell;
+use std::future::Future;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::rc::Rc;
+use thiserror::Error;
+use tracing::info;
+
+/// How to run a bench.
+#[derive(Debug)]
+pub struct RunOptions {
+    /// The seed, told to everybody.
+    pub seed: u64,
+    /// Emulated seconds for each second of the wall.
+    pub rate: f64,
+    /// What the log on stdout looks like.
+    pub format: LogFormat,
+    /// The log as JSON lines.
+    pub log_file: Option<PathBuf>,
+    /// Written when every port is open.
+    pub ready_file: Option<PathBuf>,
+    /// Paths of links are relative to this.
+    pub base: PathBuf,
+}
+
+/// Why a run did not begin.
+#[derive(Debug, Error)]
+pub enum OpenError {
+    /// A port can't be opened.
+    #[error("{0}")]
+    Port(String),
+    /// A file of the run can't be written.
+    #[error("can't write {0}: {1}")]
+    File(PathBuf, io::Error),
+}
+
+type Task = Pin<Box<dyn Future<Output = ()>>>;
+
+/// Runs `bench` until a signal ends it.
+///
+/// # Errors
+/// If a port or a file can't be opened; then nothing was served.
+pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
+    let names = bench.lines.len() > 1;
+    let logger = Logger::start(options.format, names, options.log_file.as_deref());
+    let logger = logger
+        .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
+    let log = Rc::new(RefCell::new(logger));
+    info!("seed {}", options.seed);
+    let clock = Clock::start(options.rate);
+    let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
+    for line in bench.lines {
+        let (task, endpoint) = open(&line, clock, &log, &options.base)?;
+        introduce(&line, &endpoint);
+        tasks.push(task);
+        endpoints.push(endpoint);
+    }
+    if let Some(path) = &options.ready_file {
+        let ready = Ready { seed: options.seed, endpoints };
+        ready::write(path, &ready).map_err(|error| OpenError::File(path.clone(), error))?;
+    }
+    let served = tokio::task::LocalSet::new();
+    let handles: Vec<_> = tasks.into_iter().map(|task| served.spawn_local(task)).collect();
+    let why = served.run_until(stop::requested()).await;
+    // Ports close here: links are removed, clients see the end.
+    handles.iter().for_each(|handle| handle.abort());
+    served.await;
+    info!("{why}: ended");
+    Ok(())
+}
+
+fn open(
+    line: &BenchLine,
+    clock: Clock,
+    log: &Rc<RefCell<Logger>>,
+    base: &Path,
+) -> Result<(Task, Endpoint), OpenError> {
+    let (bus, name) = (line.bus(), line.name.clone());
+    let (wire, settings) = (line.wire, line.wire.settings);
+    let mut endpoint = endpoint(line, &bus);
+    let serial_framing = wire.framing(clock.rate());
+    let served = |framing: Framing| Served { name, bus, clock, framing, log: Some(log.clone()) };
+    let refused = |what: &str| {
+        let what = what.to_owned();
+        move |error: io::Error| OpenError::Port(format!("{what}: {error}"))
+    };
+    let task: Task = match &line.port {
+        PortSpec::Pty(link) => {
+            let link = link.as_ref().map(|link| base.join(link));
+            let what =
+                link.as_ref().map_or("pseudo-terminal".into(), |it| it.display().to_string());
+            let pty = open_pty(link.as_deref(), settings).map_err(refused(&what))?;
+            endpoint.path = Some(pty.path().display().to_string());
+            endpoint.link = link.map(|link| link.display().to_string());
+            let reopen: Reopen = Box::new(move || Ok(Tty::Pty(open_pty(None, settings)?)));
+            Box::pin(serve_tty(served(serial_framing), Tty::Pty(pty), settings, reopen))
+        }
+        PortSpec::Serial(path) => {
+            let serial = open_serial(path, settings).map_err(refused(path))?;
+            if let Some(note) = serial.note() {
+                tracing::warn!("{note}");
+            }
+            endpoint.path = Some(path.clone());
+            let path = path.clone();
+            let reopen: Reopen = Box::new(move || Ok(Tty::Serial(open_serial(&path, settings)?)));
+            Box::pin(serve_tty(served(serial_framing), Tty::Serial(serial), settings, reopen))
+        }
+        PortSpec::Tcp(addr) => {
+            let listener = Listener::bind(addr).map_err(refused(addr))?;
+            endpoint.addr = Some(local(&listener, addr)?);
+            endpoint.line = None;
+            endpoint.framing = "mbap";
+            Box::pin(serve_tcp(served(Framing::Mbap), listener))
+        }
+        PortSpec::RtuOverTcp(addr) => {
+            let listener = Listener::bind(addr).map_err(refused(addr))?;
+            endpoint.addr = Some(local(&listener, addr)?);
+            Box::pin(serve_tcp(served(serial_framing), listener))
+        }
+    };
+    Ok((task, endpoint))
+}
+
+fn open_pty(link: Option<&Path>, settings: Settings) -> io::Result<Pty> {
+    let pty = Pty::open(link)?;
+    // So that a program that sets nothing is not blamed for it. Where that can't be done, it is.
+    let _ = pty.preset(settings.baud, settings.format.stop_bits);
+    Ok(pty)
+}
+
+fn open_serial(path: &str, Settings { baud, format }: Settings) -> io::Result<Serial> {
+    Serial::open(path, baud, format.data_bits, format.parity.letter(), format.stop_bits)
+}
+
+fn local(listener: &Listener, asked: &str) -> Result<String, OpenError> {
+    let addr = listener.local_addr();
+    let addr = addr.map_err(|error| OpenError::Port(format!("{asked}: {error}")))?;
+    Ok(addr.to_string())
+}
+
+fn endpoint(line: &BenchLine, bus: &Bus) -> Endpoint {
+    let unit = |drive: &crate::drive::Drive| Unit {
+        unit: drive.unit(),
+        model: drive.model().name.clone(),
+    };
+    Endpoint {
+        kind: match line.port {
+            PortSpec::Pty(_) => "pty",
+            PortSpec::Serial(_) => "serial",
+            PortSpec::Tcp(_) => "tcp",
+            PortSpec::RtuOverTcp(_) => "rtu-over-tcp",
+        },
+        path: None,
+        link: None,
+        addr: None,
+        name: line.name.clone(),
+        line: Some(line.wire.settings.to_string()),
+        framing: if line.wire.ascii { "ascii" } else { "rtu" },
+        units: bus.drives().map(|(_, drive)| unit(drive)).collect(),
+    }
+}
+
+/// Says who is where, and what a newcomer would type next.
+fn introduce(line: &BenchLine, endpoint: &Endpoint) {
+    let units = endpoint.units.iter().map(|it| format!("unit {} {}", it.unit, it.model));
+    let units = units.collect::<Vec<_>>().join(", ");
+    let place = endpoint.link.as_ref().or(endpoint.path.as_ref()).or(endpoint.addr.as_ref());
+    let place = place.cloned().unwrap_or_default();
+    let settings = match &endpoint.line {
+        Some(settings) => format!("{settings} {}", endpoint.framing.to_uppercase()),
+        None => "Modbus TCP".into(),
+    };
+    info!("{}: {units} on {place} ({settings})", endpoint.name);
+    let parity = line.wire.settings.format.parity;
+    if matches!(line.port, PortSpec::Pty(_)) && parity != Parity::None {
+        info!("a pseudo-terminal carries no parity bit: open {place} with parity none");
+    }
+    if let Some(command) = suggestion(line, endpoint, &place) {
+        info!("try: {command}");
+    }
+}
+
+/// An `mbpoll` call that reads something from the first unit; mbpoll speaks no ASCII and no RTU over TCP.
+fn suggestion(line: &BenchLine, endpoint: &Endpoint, place: &str) -> Option<String> {
+    let device = line.devices.first()?;
+    let unit = endpoint.units.iter().find(|it| it.unit != crate::wire::BROADCAST)?.unit;
+    let row = device.model.showcase()?;
+    let read = format!("-a {unit} -0 -r {} -c {} -1", row.at, row.kind.words());
+    let Settings { baud, format } = line.wire.settings;
+    match &line.port {
+        PortSpec::Pty(_) | PortSpec::Serial(_) if !line.wire.ascii => {
+            let parity = match format.parity {
+                _ if matches!(line.port, PortSpec::Pty(_)) => "none",
+                Parity::None => "none",
+                Parity::Even => "even",
+                Parity::Odd => "odd",
+            };
+            let stop = format.stop_bits;
+            Some(format!("mbpoll -m rtu -b {baud} -P {parity} -s {stop} {read} {place}"))
+        }
+        PortSpec::Tcp(_) => {
+            let (host, port) = place.rsplit_once(':')?;
+            Some(format!("mbpoll -m tcp -p {port} {read} {host}"))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,33 @@
+//! Serves a line on any async byte stream: an in-process pipe, for tests of master libraries.
+
+use super::{Send, Served};
+use std::io;
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
+
+/// Serves `line` on `stream` until its other end is dropped.
+///
+/// # Errors
+/// What the stream says.
+pub async fn serve_stream(
+    mut line: Served,
+    mut stream: impl AsyncRead + AsyncWrite + Unpin,
+) -> io::Result<()> {
+    let link = line.bus.open(line.framing);
+    let mut buffer = [0; 1024];
+    loop {
+        while let Some(send) = line.next_send() {
+            match send {
+                Send::Frame(_, frame) => stream.write_all(&frame).await?,
+                Send::Close(_) => return Ok(()),
+            }
+        }
+        tokio::select! {
+            biased;
+            read = stream.read(&mut buffer) => match read? {
+                0 => return Ok(()),
+                len => line.bus.receive(line.arrival(), link, &buffer[..len]),
+            },
+            () = line.woken() => line.bus.advance_to(line.clock.now()),
+        }
+    }
+}

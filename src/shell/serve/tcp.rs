@@ -1,0 +1,90 @@
+//! Serves a line on TCP: many clients at once onto the same drives, each with a link of its own.
+
+use super::{Send, Served};
+use crate::bus::LinkId;
+use crate::shell::clock::Clock;
+use crate::shell::port::{ClientId, Listener, TcpEvent};
+use crate::time::Duration;
+use std::collections::BTreeMap;
+use tracing::{info, warn};
+
+/// How long the listener rests when the system gives it no more descriptors.
+const REST: Duration = Duration::from_secs(1);
+
+/// Serves `line` to the clients of `listener` for ever.
+pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
+    let mut clients = Clients::default();
+    let mut resting = false;
+    loop {
+        while let Some(send) = line.next_send() {
+            match send {
+                Send::Frame(link, frame) => {
+                    clients
+                        .by_link
+                        .get(&link)
+                        .into_iter()
+                        .for_each(|id| listener.send(*id, &frame));
+                }
+                Send::Close(link) => {
+                    clients.by_link.get(&link).into_iter().for_each(|id| listener.close(*id));
+                }
+            }
+        }
+        let event = tokio::select! {
+            biased;
+            event = listener.next() => Some(event),
+            () = line.woken() => None,
+            () = Clock::wall(REST), if resting => {
+                resting = false;
+                listener.accept_again();
+                None
+            }
+        };
+        let now = line.arrival();
+        match event {
+            None => line.bus.advance_to(line.clock.now()),
+            Some(TcpEvent::Opened(id, from)) => {
+                info!("{}: {from} connected", line.name);
+                clients.insert(id, line.bus.open(line.framing));
+            }
+            Some(TcpEvent::Bytes(id, bytes)) => {
+                let link = clients.by_client.get(&id).copied();
+                link.into_iter().for_each(|link| line.bus.receive(now, link, &bytes));
+            }
+            Some(TcpEvent::Closed(id, error)) => {
+                clients.remove(id).into_iter().for_each(|link| line.bus.close(link));
+                match error {
+                    Some(error) => warn!("{}: a client is gone: {error}", line.name),
+                    None => info!("{}: a client has left", line.name),
+                }
+            }
+            Some(TcpEvent::Refused(from)) => {
+                warn!("{}: too many clients, {from} was turned away", line.name);
+            }
+            Some(TcpEvent::NotAccepting(error)) => {
+                warn!("{}: can't accept clients for now: {error}", line.name);
+                resting = true;
+            }
+        }
+    }
+}
+
+/// Who is on which link.
+#[derive(Default)]
+struct Clients {
+    by_client: BTreeMap<ClientId, LinkId>,
+    by_link: BTreeMap<LinkId, ClientId>,
+}
+
+impl Clients {
+    fn insert(&mut self, client: ClientId, link: LinkId) {
+        self.by_client.insert(client, link);
+        self.by_link.insert(link, client);
+    }
+
+    fn remove(&mut self, client: ClientId) -> Option<LinkId> {
+        let link = self.by_client.remove(&client)?;
+        self.by_link.remove(&link);
+        Some(link)
+    }
+}

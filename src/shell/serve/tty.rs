@@ -1,0 +1,109 @@
+//! Serves a line on a terminal: a pseudo-terminal of ours, or a serial port that may go and come back.
+
+use super::{Send, Served};
+use crate::line::Settings;
+use crate::shell::clock::Clock;
+use crate::shell::port::Tty;
+use crate::time::Duration;
+use std::io;
+use tracing::{info, warn};
+
+/// Opens the port again after it was lost.
+pub type Reopen = Box<dyn Fn() -> io::Result<Tty>>;
+
+/// How often a lost port is looked for.
+const LOOK_AGAIN: Duration = Duration::from_millis(250);
+
+/// Serves `line` on `tty` for ever.
+pub async fn serve_tty(mut line: Served, mut tty: Tty, settings: Settings, reopen: Reopen) {
+    let mut watch = Watch { settings, told: None, deaf: false };
+    loop {
+        let lost = serve_until_lost(&mut line, &mut tty, &mut watch).await;
+        warn!("{}: the port is gone ({lost}); waiting for it to come back", line.name);
+        tty = wait_for(&mut line, &reopen).await;
+        info!("{}: the port is back", line.name);
+    }
+}
+
+async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Error {
+    let link = line.bus.open(line.framing);
+    let mut buffer = [0; 1024];
+    let error = loop {
+        if let Err(error) = send_all(line, tty, watch) {
+            break error;
+        }
+        let read = tokio::select! {
+            biased;
+            read = tty.read(&mut buffer) => read,
+            () = line.woken() => tty.try_read(&mut buffer),
+        };
+        match read {
+            Ok(0) => line.bus.advance_to(line.clock.now()),
+            Ok(len) => {
+                watch.look(line, tty);
+                let at = line.arrival();
+                line.bus.receive(at, link, &buffer[..len]);
+            }
+            Err(error) => break error,
+        }
+    };
+    line.bus.close(link);
+    error
+}
+
+/// While the port is away the drives live on.
+async fn wait_for(line: &mut Served, reopen: &Reopen) -> Tty {
+    loop {
+        Clock::wall(LOOK_AGAIN).await;
+        line.bus.advance_to(line.clock.now());
+        while line.next_send().is_some() {}
+        if let Ok(tty) = reopen() {
+            return tty;
+        }
+    }
+}
+
+fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Result<()> {
+    while let Some(Send::Frame(_, frame)) = line.next_send() {
+        let taken = tty.write_now(&frame)?;
+        watch.sent(line, taken, frame.len());
+    }
+    Ok(())
+}
+
+/// What can be seen of the program at the other end.
+struct Watch {
+    settings: Settings,
+    /// Settings of the other end that were told already.
+    told: Option<(u32, u8)>,
+    /// The other end has stopped reading.
+    deaf: bool,
+}
+
+impl Watch {
+    /// Tells, once, if the other end is set to something that no wire would carry.
+    fn look(&mut self, line: &Served, tty: &Tty) {
+        let Tty::Pty(pty) = tty else { return };
+        let Ok(theirs) = pty.master_settings() else { return };
+        if self.told == Some(theirs) {
+            return;
+        }
+        self.told = Some(theirs);
+        let (baud, stop_bits) = theirs;
+        let Settings { baud: ours, format } = self.settings;
+        if baud != ours || stop_bits != format.stop_bits {
+            warn!(
+                "{}: the master has set {baud} baud and {stop_bits} stop bit(s), the line is {}; \
+                 a pseudo-terminal does not care, a wire would",
+                line.name, self.settings
+            );
+        }
+    }
+
+    fn sent(&mut self, line: &Served, taken: usize, len: usize) {
+        if taken < len && !self.deaf {
+            warn!("{}: nobody reads the answers; they are lost, as on a wire", line.name);
+        }
+        self.deaf = taken < len;
+    }
+}
