@@ -44,3 +44,8 @@ pub mod time;
 pub mod units;
 pub mod wire;
 pub mod words;
+
+/// The README's Rust is tested with everything else.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

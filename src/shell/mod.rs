@@ -18,4 +18,4 @@ pub use diagnostics::{Diagnostics, diagnose};
 pub use library::FileLibrary;
 pub use logger::{LogFormat, Logger};
 pub use run::{OpenError, RunOptions, run};
-pub use serve::{Served, serve_stream};
+pub use serve::{Reopen, Served, serve_stream, serve_tty};

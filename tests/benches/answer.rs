@@ -1,0 +1,141 @@
+//! What an answer costs, as ratios against a named baseline in the same run.
+//!
+//! `cargo bench --bench answer`. In process: a read of two registers against the CRC of its request, which is the
+//! least that any Modbus slave must do. Through a pseudo-terminal: the same read against a bare echo of eight
+//! bytes with the same client.
+
+#![allow(clippy::disallowed_methods, clippy::print_stdout, missing_docs)] // A benchmark measures the wall.
+
+use drivemu::bus::{Bus, Output};
+use drivemu::line::Framing;
+use drivemu::model::builtin::Builtin;
+use drivemu::testkit::hex;
+use drivemu::time::{Duration, Instant};
+use drivemu::wire::crc16;
+use std::hint::black_box;
+use std::time::Instant as Wall;
+
+fn main() {
+    in_process();
+    #[cfg(feature = "cli")]
+    pseudo_terminal::compare();
+}
+
+fn in_process() {
+    let model = Builtin::find(Builtin::default_name()).expect("the default model");
+    let model = model.load(&Default::default()).expect("a valid model");
+    let mut bus = Bus::new();
+    bus.add(model.into(), &Default::default(), 0);
+    let link = bus.open(Framing::Rtu { gap: Duration::from_millis(20), patient: true });
+    let request = hex("01 03 00 0A 00 02 E4 09").expect("hex");
+    let mut now = Instant::ZERO;
+    let answer = median(200_000, || {
+        now += Duration::from_millis(1);
+        bus.receive(now, link, black_box(&request));
+        while let Some(output) = bus.poll_output() {
+            black_box(matches!(output, Output::Transmit { .. }));
+        }
+    });
+    let crc = median(200_000, || {
+        black_box(crc16(black_box(&request)));
+    });
+    println!("in process   answer {answer:6.0} ns   crc of the request {crc:6.1} ns   ratio {:.1}", answer / crc);
+}
+
+/// Median of the nanoseconds that one call takes, over 21 rounds.
+fn median(calls: u32, mut call: impl FnMut()) -> f64 {
+    let mut rounds: Vec<f64> = (0..21)
+        .map(|_| {
+            let start = Wall::now();
+            (0..calls / 21).for_each(|_| call());
+            start.elapsed().as_nanos() as f64 / f64::from(calls / 21)
+        })
+        .collect();
+    rounds.sort_by(f64::total_cmp);
+    rounds[10]
+}
+
+#[cfg(feature = "cli")]
+mod pseudo_terminal {
+    use super::*;
+    use drivemu::shell::port::Pty;
+    use std::io::{Read, Write};
+    use std::path::PathBuf;
+
+    /// Both servers run in threads of their own; the two are asked in turn, so that a machine whose speed
+    /// drifts drifts for both.
+    pub fn compare() {
+        let (echo, drive) = (serve_echo(), serve_drive());
+        let (mut echo, mut drive) = (Client::open(&echo, 8), Client::open(&drive, 9));
+        let (mut echoes, mut answers) = (Vec::new(), Vec::new());
+        for _ in 0..40 {
+            echoes.push(echo.round_trip_us(100));
+            answers.push(drive.round_trip_us(100));
+        }
+        [&mut echoes, &mut answers].into_iter().for_each(|it| it.sort_by(f64::total_cmp));
+        let (echo, answer) = (echoes[20], answers[20]);
+        println!("pty          answer {answer:6.1} us   bare echo {echo:6.1} us   ratio {:.2}", answer / echo);
+    }
+
+    struct Client {
+        port: std::fs::File,
+        answer: usize,
+    }
+
+    impl Client {
+        fn open(path: &PathBuf, answer: usize) -> Self {
+            let port = std::fs::OpenOptions::new().read(true).write(true).open(path);
+            Self { port: port.expect("the terminal"), answer }
+        }
+
+        fn round_trip_us(&mut self, times: u32) -> f64 {
+            let request = hex("01 03 00 0A 00 02 E4 09").expect("hex");
+            let mut answer = vec![0; self.answer];
+            let start = Wall::now();
+            for _ in 0..times {
+                self.port.write_all(&request).expect("written");
+                self.port.read_exact(&mut answer).expect("an answer");
+            }
+            start.elapsed().as_nanos() as f64 / 1e3 / f64::from(times)
+        }
+    }
+
+    fn serve_echo() -> PathBuf {
+        serve(|pty| async move {
+            let mut buffer = [0; 256];
+            loop {
+                let len = pty.read(&mut buffer).await.expect("bytes");
+                pty.write_now(&buffer[..len]).expect("sent");
+            }
+        })
+    }
+
+    fn serve_drive() -> PathBuf {
+        use drivemu::line::Settings;
+        use drivemu::shell::port::Tty;
+        use drivemu::shell::{Clock, Served, serve_tty};
+        serve(|pty| async move {
+            let model = Builtin::find(Builtin::default_name()).expect("the default model");
+            let model = model.load(&Default::default()).expect("a valid model");
+            let mut bus = Bus::new();
+            bus.add(model.into(), &Default::default(), 0);
+            let framing = Framing::Rtu { gap: Duration::from_millis(20), patient: true };
+            let clock = Clock::start(1.0);
+            let line = Served { name: "line".into(), bus, clock, framing, log: None };
+            serve_tty(line, Tty::Pty(pty), Settings::STANDARD, Box::new(|| Ok(Tty::Pty(Pty::open(None)?)))).await;
+        })
+    }
+
+    fn serve<F: Future<Output = ()>>(serve: impl FnOnce(Pty) -> F + Send + 'static) -> PathBuf {
+        let (path, opened) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+            runtime.expect("a runtime").block_on(async move {
+                let pty = Pty::open(None).expect("a pseudo-terminal");
+                path.send(pty.path().to_owned()).expect("somebody waits");
+                serve(pty).await;
+            });
+        });
+        opened.recv().expect("a path")
+    }
+}
