@@ -1,10 +1,11 @@
 //! What happened: the values that the log, the tests and later tools are made from. No text here.
 
+use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
-use crate::wire::{Frame, NoiseCause};
+use crate::wire::{Frame, Inline, NoiseCause, Pdu};
 use crate::words::{AlarmCause, Refusal, RowId};
 
 /// Something that happened on a line, and when.
@@ -30,21 +31,21 @@ pub enum What {
         /// Who.
         drive: DriveId,
         /// The request's PDU.
-        request: Frame,
+        request: Pdu,
         /// Why it did not execute it.
         refusal: Option<Refusal>,
     },
     /// A broadcast that nobody can execute, because it asks for an answer.
     BroadcastRead {
         /// The request's PDU.
-        request: Frame,
+        request: Pdu,
     },
     /// Traffic of others.
     Foreign {
         /// Its unit address.
         unit: u8,
         /// PDU.
-        pdu: Frame,
+        pdu: Pdu,
         /// An answer rather than a request?
         answer: bool,
     },
@@ -67,12 +68,14 @@ pub enum What {
     /// Bytes that are no frame.
     Noise {
         /// The first of them.
-        head: Frame,
+        head: Inline<16>,
         /// How many there were.
         len: usize,
         /// Why they are none.
         why: NoiseCause,
     },
+    /// All drives of the line talk in another mode now, and the line goes with them.
+    Moved(Mode),
     /// A TCP stream that could not be followed and was closed.
     Lost(BadHeader),
     /// A drive did something without being asked on this line, or as a consequence.
@@ -94,9 +97,9 @@ pub struct Transaction {
     /// The unit address that was asked.
     pub unit: u8,
     /// The request's PDU.
-    pub request: Frame,
+    pub request: Pdu,
     /// The answer's PDU.
-    pub answer: Frame,
+    pub answer: Pdu,
     /// Why it was refused, if it was.
     pub refusal: Option<Refusal>,
 }
@@ -145,6 +148,13 @@ pub enum Change {
         from: u8,
         /// The new one.
         to: u8,
+    },
+    /// It talks in another mode now.
+    Mode {
+        /// The old one; `None` where its parameters held codes that stand for nothing.
+        from: Option<Mode>,
+        /// The new one.
+        to: Option<Mode>,
     },
     /// An input terminal got another level.
     Terminal {

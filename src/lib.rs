@@ -7,24 +7,29 @@
 //! tests, [`testkit`] puts a virtual clock round it:
 //!
 //! ```
+//! use drivemu::model::builtin::Builtin;
 //! use drivemu::testkit::Rig;
 //!
-//! let mut rig = Rig::builtin("yako-closed-loop").expect("an embedded model");
-//! assert_eq!(rig.ask("01 03 00 23 00 01"), "01 03 02 00 3C");
+//! let mut rig = Rig::builtin(Builtin::default_name()).expect("an embedded model");
+//! // No drive knows function 2B, so an exception answers.
+//! assert!(rig.ask("01 2B 0E 01 00").starts_with("01 AB"));
 //! ```
 //!
 //! `docs/ARCHITECTURE.md` draws the map. Imports point down only:
 //!
 //! ```text
 //! main · cli            flags, exit code
+//! testkit               virtual clock; of all this only `testkit::live` needs the shell
 //! shell                 the only place that waits          (feature `cli`)
-//! testkit · log         virtual clock | events as text
-//! bench                 benches: YAML -> buses
+//! bench  log            benches: YAML -> buses | events as text
 //! bus                   one line: framing + drives
 //! drive                 the only place that sees registers AND behaviours
 //! bank  behaviour       cells and plans | state machines
-//! line  model           silence and frames | YAML -> Model
-//! time units wire words event problem                      what everyone may say
+//! model                 YAML -> Model
+//! line                  silence and frames
+//! event                 what happened
+//! words  serial         what models and behaviours both say | speed and format of a line
+//! time  units  wire  problem                               what everyone may say
 //! ```
 
 pub mod bank;
@@ -37,6 +42,7 @@ pub mod line;
 pub mod log;
 pub mod model;
 pub mod problem;
+pub mod serial;
 #[cfg(feature = "cli")]
 pub mod shell;
 pub mod testkit;

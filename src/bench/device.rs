@@ -37,6 +37,8 @@ pub enum Wish {
     Unit,
     /// A start value.
     Set(String),
+    /// The name that a start value goes by.
+    SetName(String),
     /// The address switches.
     Switches,
     /// A terminal, by position in the list.
@@ -64,6 +66,11 @@ impl Device {
         let mut values = Vec::new();
         for (name, value) in &spec.set {
             match start_value(&model, name, *value) {
+                Ok((row, _)) if values.iter().any(|(other, _)| *other == row) => {
+                    let wish = Wish::SetName(name.clone());
+                    let what = format!("{} is set twice", model.map.row(row).label());
+                    problems.push(SpecProblem { wish, what, advice: None });
+                }
                 Ok(value) => values.push(value),
                 Err(problem) => problems.push(problem),
             }
@@ -88,12 +95,10 @@ impl Device {
 fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), SpecProblem> {
     let wish = Wish::Set(name.to_owned());
     let Some(id) = model.map.find(name) else {
-        let ids = model.map.rows().map(|(_, row)| row.id.as_str());
-        let options = model.options.iter().map(|option| option.name.as_str());
-        let advice = suggest::did_you_mean(name, ids.chain(options));
-        return Err(SpecProblem { wish, what: format!("no register or option `{name}`"), advice });
+        return Err(no_register(model, name));
     };
     let row = model.map.row(id);
+    let asked = value;
     // People write the bits of a negative number as well as the number.
     let bits = u32::try_from(value).ok().map(|raw| row.kind.value(raw));
     let value = [Some(value), bits].into_iter().flatten().find(|value| row.admits(*value));
@@ -104,10 +109,26 @@ fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), Sp
         }
         Some(value) => Ok((id, row.kind.raw(value))),
         None => {
-            let what = format!("{} takes {}", row.label(), row.range_text());
+            let what = format!("{} takes {}, not {}", row.label(), row.range_text(), asked);
             Err(SpecProblem { wish, what, advice: None })
         }
     }
+}
+
+fn no_register(model: &Model, name: &str) -> SpecProblem {
+    let wish = Wish::SetName(name.to_owned());
+    if model.options.iter().any(|option| option.name == name) {
+        let (what, advice) = (format!("`{name}` is an option, not a register"), "see `options`");
+        return SpecProblem { wish, what, advice: Some(advice.into()) };
+    }
+    if let Ok(address) = name.parse::<u16>() {
+        let what = format!("no register at 0x{address:04X}");
+        return SpecProblem { wish, what, advice: None };
+    }
+    let ids = model.map.rows().map(|(_, row)| row.id.as_str());
+    let options = model.options.iter().map(|option| option.name.as_str());
+    let advice = suggest::did_you_mean(name, ids.chain(options));
+    SpecProblem { wish, what: format!("no register or option `{name}`"), advice }
 }
 
 fn unit_value(
@@ -119,7 +140,13 @@ fn unit_value(
     let row = model.map.row(model.line.unit.row);
     let value = i64::from(unit) + station as i64;
     if !row.admits(value) || value == 0 {
-        let what = format!("{} takes {}, not {value}", row.label(), row.range_text());
+        if problems.iter().any(|problem| problem.wish == Wish::Unit) {
+            return None;
+        }
+        let what = match value {
+            0 => "unit 0 is for broadcasts, and no drive answers to it".into(),
+            _ => format!("{} takes {}, not {value}", row.label(), row.range_text()),
+        };
         problems.push(SpecProblem { wish: Wish::Unit, what, advice: None });
         return None;
     }

@@ -1,14 +1,15 @@
 //! Sets each drive's own baud and format parameters to the line's, as whoever wired the cell has done.
 
 use super::Device;
-use crate::line::Settings;
 use crate::model::{Coded, Model, RowId};
+use crate::serial::Mode;
 
-/// Sets the serial parameters of `device` to `settings` and `ascii`.
+/// Sets the serial parameters of `device` to `mode`.
 ///
 /// # Errors
 /// One sentence, if the drive has no code for that speed or format; it could never be on such a line.
-pub fn match_line(device: &mut Device, settings: Settings, ascii: bool) -> Result<(), String> {
+pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
+    let Mode { ascii, settings } = mode;
     let model = device.model.clone();
     let line = &model.line;
     let baud = code(&line.baud, |baud| *baud == settings.baud).ok_or_else(|| {

@@ -7,15 +7,15 @@ mod device;
 mod match_line;
 mod parse;
 pub mod raw;
+mod wire_spec;
 
 pub use device::{Device, DeviceSpec, SpecProblem, Wish};
 pub use match_line::match_line;
 pub use parse::{kind_of, parse};
+pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;
-use crate::line::{Framing, Settings};
 use crate::model::builtin::Builtin;
-use crate::time::Duration;
 
 /// Where model files come from.
 pub trait Library {
@@ -83,45 +83,34 @@ pub enum PortSpec {
     RtuOverTcp(String),
 }
 
-/// How a line is set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WireSpec {
-    /// Speed and character format.
-    pub settings: Settings,
-    /// ASCII framing instead of RTU.
-    pub ascii: bool,
-    /// RTU frames end by silence only.
-    pub strict: bool,
-    /// Characters of silence that end a frame.
-    pub silence: f64,
-}
-
-/// Silence that a patient line waits for at least: schedulers and USB adapters stretch a pause inside a
-/// frame to 3-16 ms.
-pub const PATIENT_GAP: Duration = Duration::from_millis(20);
-
-/// Longest pause inside an ASCII frame (serial line, 2.5.2.1).
-const ASCII_GAP: Duration = Duration::from_secs(1);
-
-impl WireSpec {
-    /// The framing of a serial line at `rate` emulated seconds per wall second: a patient gap is a
-    /// fact of the wall, so it grows with the rate.
-    pub fn framing(&self, rate: f64) -> Framing {
-        if self.ascii {
-            return Framing::Ascii { gap: ASCII_GAP.mul_f64(rate) };
+impl PortSpec {
+    /// The key of a bench file that says it.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Pty(_) => "pty",
+            Self::Serial(_) => "serial",
+            Self::Tcp(_) => "tcp",
+            Self::RtuOverTcp(_) => "rtu_over_tcp",
         }
-        let silence = self.settings.silence(self.silence);
-        match self.strict {
-            true => Framing::Rtu { gap: silence, patient: false },
-            false => Framing::Rtu { gap: silence.max(PATIENT_GAP).mul_f64(rate), patient: true },
+    }
+
+    /// The path or address that it takes, if it asks for one.
+    pub fn place(&self) -> Option<&str> {
+        match self {
+            Self::Pty(link) => link.as_deref(),
+            Self::Serial(place) | Self::Tcp(place) | Self::RtuOverTcp(place) => Some(place),
         }
     }
 }
 
 impl BenchLine {
-    /// A bus with all drives of this line on it, switched on.
+    /// A bus with all drives of this line on it, switched on. On a serial line they hear what is said in
+    /// the line's mode; on Modbus TCP there is none.
     pub fn bus(&self) -> Bus {
         let mut bus = Bus::new();
+        if !matches!(self.port, PortSpec::Tcp(_)) {
+            bus.set_mode(self.wire.mode);
+        }
         for (i, device) in self.devices.iter().enumerate() {
             for setup in &device.setups {
                 bus.add(device.model.clone(), setup, i as u16);

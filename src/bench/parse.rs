@@ -6,9 +6,9 @@ use super::{
     match_line,
 };
 use crate::drive::Drive;
-use crate::line::Settings;
 use crate::model::{Choices, Model};
-use crate::problem::{At, Path, Problem, section};
+use crate::problem::{At, Path, Problem, Seg, section};
+use crate::serial::Settings;
 use crate::time::Instant;
 use serde_yaml::Value;
 use std::collections::BTreeMap;
@@ -44,8 +44,6 @@ pub fn parse(text: &str, library: &dyn Library) -> Result<Bench, Vec<Problem>> {
 #[derive(serde::Deserialize)]
 struct Head {
     seed: Option<u64>,
-    #[serde(rename = "lines")]
-    _lines: serde::de::IgnoredAny,
 }
 
 struct Reader<'a> {
@@ -57,13 +55,16 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn bench(&mut self, file: &Value) -> Bench {
-        let head: Option<Head> = section::read(file, &Path::root(), KEYS, &mut self.problems);
+        let mut head = file.clone();
+        let lines = head.as_mapping_mut().and_then(|head| head.remove("lines"));
+        let head: Option<Head> = section::read(&head, &Path::root(), KEYS, &mut self.problems);
         let seed = head.and_then(|head| head.seed);
         let path = Path::root().key("lines");
-        let items = match file.get("lines") {
+        let items = match &lines {
             Some(Value::Sequence(items)) => items.as_slice(),
             Some(_) => {
-                self.problems.push(Problem::value(path.clone(), "this is a list of lines"));
+                self.problems
+                    .push(Problem::value(path.clone(), "a list of lines should stand here"));
                 &[]
             }
             None => &[],
@@ -75,8 +76,10 @@ impl Reader<'_> {
             let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
             if lines.iter().any(|it| it.name == line.name) {
                 let what = format!("there is a line `{}` above", line.name);
-                self.problems.push(Problem::value(path.key("name"), what));
+                let advice = "give each line its own `name`";
+                self.problems.push(Problem::value(path.key("name"), what).advise(advice));
             }
+            self.port_taken(&line, &lines, &path);
             lines.push(line);
         }
         if items.is_empty() && self.problems.is_empty() {
@@ -110,18 +113,48 @@ impl Reader<'_> {
         ];
         let mut given = given.into_iter().flatten();
         match (given.next(), given.next()) {
-            (Some(port), None) => Some(port),
+            (Some(port), None) => {
+                self.no_effect(raw, &port, path);
+                Some(port)
+            }
             (None, _) => {
                 let what = "this line has no port";
                 let advice = "give one of pty, serial, tcp, rtu_over_tcp";
                 self.problems.push(Problem::value(path.clone(), what).advise(advice));
                 None
             }
-            (Some(_), Some(_)) => {
-                let what = "a line has one port, this one has several";
-                self.problems.push(Problem::value(path.clone(), what).advise("make it two lines"));
+            (Some(_), Some(second)) => {
+                let what = "a line has one port, and this is another";
+                let path = path.key(second.key());
+                self.problems.push(Problem::key(path, what).advise("make it two lines"));
                 None
             }
+        }
+    }
+
+    /// A key that could change nothing on this line is a mistake, not a decoration.
+    fn no_effect(&mut self, raw: &RawBenchLine, port: &PortSpec, path: &Path) {
+        let given = [
+            ("settings", raw.settings.is_some()),
+            ("ascii", raw.ascii.is_some()),
+            ("strict", raw.strict),
+        ];
+        for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+            let why = match (port, raw.ascii) {
+                (PortSpec::Tcp(_), _) => "in Modbus TCP",
+                (_, Some(true)) if key == "strict" => "in ASCII framing",
+                _ => continue,
+            };
+            let what = format!("`{key}` changes nothing {why}");
+            self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+        }
+    }
+
+    fn port_taken(&mut self, line: &BenchLine, lines: &[BenchLine], path: &Path) {
+        let Some(place) = line.port.place().filter(|place| !place.ends_with(":0")) else { return };
+        if let Some(other) = lines.iter().find(|it| it.port.place() == Some(place)) {
+            let what = format!("line `{}` has the same port", other.name);
+            self.problems.push(Problem::value(path.key(line.port.key()), what));
         }
     }
 
@@ -163,14 +196,17 @@ impl Reader<'_> {
                 Some(model)
             }
             Err(problems) if crate::model::load(&text, &Choices::new()).is_ok() => {
-                let of_options =
-                    |problem: Problem| Problem { path: path.join(&problem.path), ..problem };
-                self.problems.extend(problems.into_iter().map(of_options));
+                let of_options = problems.into_iter().map(|it| of_options(it, &file, path));
+                self.problems.extend(of_options);
                 None
             }
             Err(problems) => {
-                let what =
-                    format!("{file} has {} problem(s), the first: {}", problems.len(), problems[0]);
+                let more = match problems.len() {
+                    0 | 1 => String::new(),
+                    len => format!(", and {} more", len - 1),
+                };
+                let first = problems.first().map(Problem::to_string).unwrap_or_default();
+                let what = format!("{file} is invalid: {first}{more}");
                 let problem = Problem::value(path_of_model, what);
                 self.problems.push(problem.advise(format!("see `drivemu check {file}`")));
                 None
@@ -197,7 +233,7 @@ impl Reader<'_> {
         let wire = WireSpec::of(&devices, settings, raw.ascii, raw.strict);
         if !matches!(port, PortSpec::Tcp(_)) {
             for (i, device) in devices.iter_mut().enumerate() {
-                if let Err(what) = match_line(device, wire.settings, wire.ascii) {
+                if let Err(what) = match_line(device, wire.mode) {
                     let path = path.key("drives").index(i).key("model");
                     let advice = "choose `settings` that all drives of the line know";
                     self.problems.push(Problem::value(path, what).advise(advice));
@@ -226,34 +262,22 @@ impl Reader<'_> {
     }
 }
 
-impl WireSpec {
-    /// How a line with `devices` is set: as told, else as the first drive's own parameters say.
-    pub fn of(
-        devices: &[Device],
-        settings: Option<Settings>,
-        ascii: Option<bool>,
-        strict: bool,
-    ) -> Self {
-        let first = devices.first();
-        let own = first.and_then(|device| {
-            Drive::new(device.model.clone(), device.setups.first()?, Instant::ZERO).settings()
-        });
-        let (own, own_ascii) = own.unwrap_or((Settings::STANDARD, false));
-        Self {
-            settings: settings.unwrap_or(own),
-            ascii: ascii.unwrap_or(own_ascii),
-            strict,
-            silence: first.map_or(3.5, |device| device.model.line.silence),
-        }
+/// What the options of the drive at `path` make of its model, which is fine without them.
+fn of_options(problem: Problem, file: &str, path: &Path) -> Problem {
+    if problem.path.segs().first() == Some(&Seg::Key("options".into())) {
+        return Problem { path: path.join(&problem.path), ..problem };
     }
+    let what = format!("with these options {file} is invalid: {problem}");
+    Problem::key(path.key("options"), what).advise(format!("see `drivemu check {file}`"))
 }
 
 fn at_wish(problem: SpecProblem, path: &Path) -> Problem {
-    let path = match &problem.wish {
-        Wish::Unit => path.key("unit"),
-        Wish::Set(name) => path.key("set").key(name),
-        Wish::Switches => path.key("switches"),
-        Wish::Terminal(i) => path.key("terminals").index(*i),
+    let (path, at) = match &problem.wish {
+        Wish::Unit => (path.key("unit"), At::Value),
+        Wish::Set(name) => (path.key("set").key(name), At::Value),
+        Wish::SetName(name) => (path.key("set").key(name), At::Key),
+        Wish::Switches => (path.key("switches"), At::Value),
+        Wish::Terminal(i) => (path.key("terminals").index(*i), At::Value),
     };
-    Problem { path, at: At::Value, what: problem.what, advice: problem.advice, mark: None }
+    Problem { path, at, what: problem.what, advice: problem.advice, mark: None }
 }

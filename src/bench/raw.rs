@@ -1,6 +1,6 @@
 //! A bench file as it is written: the reference of the format.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 #[cfg(feature = "cli")]
@@ -53,8 +53,8 @@ pub struct RawBenchDrive {
     /// The model's options, by name.
     #[serde(default)]
     pub options: BTreeMap<String, String>,
-    /// Start values, by register.
-    #[serde(default)]
+    /// Start values, by register: the row's name, or an address.
+    #[serde(default, deserialize_with = "by_register")]
     pub set: BTreeMap<String, i64>,
     /// The address switches, as a number.
     pub switches: Option<u8>,
@@ -64,6 +64,22 @@ pub struct RawBenchDrive {
     /// The machine on its axis.
     #[serde(default)]
     pub machine: RawMachine,
+}
+
+/// An address is a number to YAML, a name is a text: both are keys here.
+fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i64>, D::Error> {
+    #[derive(Deserialize, PartialEq, Eq, PartialOrd, Ord)]
+    #[serde(untagged, expecting = "a register is a name or an address")]
+    enum Key {
+        Address(u16),
+        Name(String),
+    }
+    let values = BTreeMap::<Key, i64>::deserialize(from)?.into_iter();
+    let named = |(key, value)| match key {
+        Key::Address(address) => (address.to_string(), value),
+        Key::Name(name) => (name, value),
+    };
+    Ok(values.map(named).collect())
 }
 
 /// The machine on the axis of a drive.

@@ -1,15 +1,14 @@
 //! From what a link heard to what the drives say: the middle of the road from byte to byte.
 
 use super::{Bus, LinkId, Output};
-use crate::drive::Drive;
 use crate::event::{DriveId, Transaction, What};
 use crate::line::{Foreign, Heard};
 use crate::wire::function::READ;
-use crate::wire::{Adu, BROADCAST, Exception, Frame, Response};
+use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
 
 /// What a link heard, detached from its buffer so that drives and links can be touched again.
 enum Taken {
-    Request { unit: u8, pdu: Frame },
+    Request { unit: u8, pdu: Pdu },
     BadCrc(What),
     Told(What),
     Lost(What),
@@ -47,20 +46,21 @@ impl Bus {
                 Taken::Told(What::BadAscii { characters: Frame::from_slice(bytes), why })
             }
             Heard::Noise { bytes, len, why } => {
-                Taken::Told(What::Noise { head: Frame::from_slice(bytes), len, why })
+                Taken::Told(What::Noise { head: Inline::from_slice(bytes), len, why })
             }
             Heard::Lost(why) => Taken::Lost(What::Lost(why)),
         })
     }
 
-    fn answer(&mut self, link: LinkId, unit: u8, request: Frame) {
+    fn answer(&mut self, link: LinkId, unit: u8, request: Pdu) {
         let addressed = self.by_unit[usize::from(unit)];
         let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
         let now = self.now;
         let (answer, refusal) = match self.drives[usize::from(id.0)].request(now, &request) {
             Ok(response) => (response.encode(), None),
             Err(refusal) => {
-                let exception = Drive::exception(&request, refusal);
+                let function = request.first().copied().unwrap_or(0);
+                let exception = Exception { function, code: refusal.code };
                 (Response::Exception(exception).encode(), Some(refusal))
             }
         };
@@ -70,11 +70,14 @@ impl Bus {
     }
 
     /// Every drive executes, none answers (serial line, 2.1).
-    fn broadcast(&mut self, request: Frame) {
+    fn broadcast(&mut self, request: Pdu) {
         if request.first() == Some(&READ) {
             return self.emit(What::BroadcastRead { request });
         }
         for i in 0..self.drives.len() {
+            if !self.hears(&self.drives[i]) {
+                continue;
+            }
             let drive = DriveId(i as u16);
             let refusal = self.drives[i].request(self.now, &request).err();
             self.emit(What::Broadcast { drive, request, refusal });
@@ -105,7 +108,7 @@ impl Bus {
 }
 
 fn request(adu: Adu<'_>) -> Taken {
-    Taken::Request { unit: adu.unit, pdu: Frame::from_slice(adu.pdu) }
+    Taken::Request { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu) }
 }
 
 fn told(foreign: Foreign<'_>) -> What {
@@ -113,5 +116,5 @@ fn told(foreign: Foreign<'_>) -> What {
         Foreign::Request(adu) => (adu, false),
         Foreign::Response(adu) => (adu, true),
     };
-    What::Foreign { unit: adu.unit, pdu: Frame::from_slice(adu.pdu), answer }
+    What::Foreign { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu), answer }
 }

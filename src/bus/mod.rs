@@ -15,10 +15,12 @@ pub use command::{Command, CommandError, Reply};
 pub use output::{LinkId, Output, Wake, WakeReason};
 
 use crate::drive::{Drive, Setup};
-use crate::event::{DriveId, Event, What};
+use crate::event::{Change, DriveId, Event, What};
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
+use crate::serial::Mode;
 use crate::time::Instant;
+use crate::wire::BROADCAST;
 use agenda::Agenda;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -35,6 +37,8 @@ pub struct Bus {
     drives: Vec<Drive>,
     /// Device that each drive belongs to: the stations of one device share their power.
     devices: Vec<u16>,
+    /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
+    mode: Option<Mode>,
     units: Units,
     by_unit: [Option<DriveId>; 256],
     agenda: Agenda,
@@ -57,6 +61,7 @@ impl Bus {
             next_link: 0,
             drives: Vec::new(),
             devices: Vec::new(),
+            mode: None,
             units: Units::new(),
             by_unit: [None; 256],
             agenda: Agenda::default(),
@@ -82,6 +87,17 @@ impl Bus {
         let sole = framing == Framing::Mbap;
         self.links.insert(id, Link { line: Line::new(framing), sole });
         id
+    }
+
+    /// Says how the line talks. Until then, and on TCP, every drive hears everything.
+    pub fn set_mode(&mut self, mode: Mode) {
+        self.mode = Some(mode);
+        self.readdress();
+    }
+
+    /// Tells frames on all links apart in another way from now on. What was half received is forgotten.
+    pub fn reframe_all(&mut self, framing: Framing) {
+        self.links.values_mut().for_each(|link| link.line = Line::new(framing));
     }
 
     /// Closes a link. What was half received on it is forgotten.
@@ -170,17 +186,34 @@ impl Bus {
     fn after_drive(&mut self, id: DriveId) {
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
-            moved |= matches!(
-                change,
-                crate::event::Change::Unit { .. } | crate::event::Change::PoweredOn
-            );
+            moved |=
+                matches!(change, Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn);
             let unit = self.drives[usize::from(id.0)].unit();
             self.emit(What::Drive { drive: id, unit, change });
         }
         if moved {
+            self.follow_drives();
             self.readdress();
         }
         self.agenda.set(id, self.drives[usize::from(id.0)].deadline());
+    }
+
+    /// Where all drives of a serial line agree on another mode, the line goes with them: a lone drive takes
+    /// its port along.
+    fn follow_drives(&mut self) {
+        let Some(line) = self.mode else { return };
+        let mut modes = self.drives.iter().map(Drive::mode);
+        let Some(Some(first)) = modes.next() else { return };
+        if first != line && modes.all(|mode| mode == Some(first)) {
+            self.mode = Some(first);
+            self.emit(What::Moved(first));
+            self.outputs.push_back(Output::Moved(first));
+        }
+    }
+
+    /// Does the drive hear what is said on the line?
+    fn hears(&self, drive: &Drive) -> bool {
+        self.mode.is_none() || drive.mode() == self.mode
     }
 
     /// Finds out again who answers to what. Of two drives with one address the first answers.
@@ -188,7 +221,7 @@ impl Bus {
         self.units = Units::new();
         self.by_unit = [None; 256];
         for (i, drive) in self.drives.iter().enumerate().rev() {
-            if drive.unit() != crate::wire::BROADCAST {
+            if drive.unit() != BROADCAST && self.hears(drive) {
                 self.units.insert(drive.unit());
                 self.by_unit[usize::from(drive.unit())] = Some(DriveId(i as u16));
             }

@@ -1,6 +1,7 @@
 //! What leaves a bus, and when it wants to be woken.
 
 use crate::event::{DriveId, Event};
+use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::Frame;
 
@@ -18,6 +19,9 @@ pub enum Output {
         /// The bytes.
         frame: Frame,
     },
+    /// The line talks in another mode from now on: a port moves there once what was transmitted has left, and
+    /// its link is framed anew.
+    Moved(Mode),
     /// The link can't be followed any more and should be closed.
     Close(LinkId),
     /// Something happened.

@@ -60,7 +60,7 @@ pub struct RunArgs {
     /// Stop bits
     #[arg(short = 's', long, value_name = "1|2", value_parser = clap::value_parser!(u8).range(1..=2))]
     pub stop_bits: Option<u8>,
-    /// A model option (crc_error=silent) or a register's start value (P09.11=1); repeatable
+    /// A model option (crc_error=silent) or a register's start value (accel_time=200); repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Seed of the run (default: drawn and printed)
@@ -100,7 +100,7 @@ pub enum LogFormatArg {
 pub struct ShowArgs {
     /// A model, a product, or a model file
     pub model: String,
-    /// One row: its name, or its address (0x0304, 0304H, 772)
+    /// One row: its name, or its address (0x1234, 1234H, 4660)
     #[arg(value_name = "ROW|ADDR")]
     pub row: Option<String>,
     /// How to print it

@@ -7,7 +7,7 @@ use drivemu::bench::{kind_of, parse};
 use drivemu::model::check as check_model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
-use drivemu::shell::FileLibrary;
+use drivemu::shell::{FileLibrary, plain};
 use std::path::Path;
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
@@ -17,7 +17,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
         let text = match std::fs::read_to_string(file) {
             Ok(text) => text,
             Err(error) => {
-                complain(&format!("{name}: {error}"));
+                complain(&format!("{name}: {}", plain(&error)));
                 bad += 1;
                 continue;
             }

@@ -5,10 +5,10 @@ use super::{FAILED, Failure, INVALID, NO_PORT};
 use drivemu::bench::{
     Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, kind_of, match_line, parse,
 };
-use drivemu::line::{Parity, Settings};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::problem::render::render;
+use drivemu::serial::{Mode, Parity, Settings};
 use drivemu::shell::{
     Diagnostics, FileLibrary, LogFormat, OpenError, RunOptions, diagnose, run as run_bench,
 };
@@ -143,11 +143,11 @@ fn line(
     let port = port(args);
     let ascii = args.ascii.then_some(true);
     let own = WireSpec::of(std::slice::from_ref(&device), None, ascii, false);
-    let settings = settings(args, own.settings);
-    let wire = WireSpec { settings, ..own };
+    let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
+    let wire = WireSpec { mode, ..own };
     if !matches!(port, PortSpec::Tcp(_)) {
-        match_line(&mut device, wire.settings, wire.ascii).map_err(Failure::invalid)?;
-    } else if args.ascii || settings != own.settings {
+        match_line(&mut device, wire.mode).map_err(Failure::invalid)?;
+    } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }
     Ok(BenchLine { name: "line".into(), port, wire, devices: vec![device] })

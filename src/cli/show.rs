@@ -190,7 +190,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
             };
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
         }
-        Reaction::Unit => "unit address".into(),
+        Reaction::Line => "how the drive is reached".into(),
     };
     Some(shows.unwrap_or_else(reaction))
 }

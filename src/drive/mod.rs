@@ -14,10 +14,11 @@ pub use setup::Setup;
 use crate::bank::{Bank, Causes, Gate};
 use crate::behaviour::{Hold, Servo, Trip};
 use crate::event::Change;
-use crate::line::Settings;
 use crate::model::{Model, WireFormat};
+use crate::serial::{Mode, Settings};
 use crate::time::Instant;
-use crate::wire::{Exception, Malformed, Request, Response, Span, Words};
+use crate::wire::function::READ;
+use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Refusal};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -37,6 +38,7 @@ pub struct Drive {
     inputs: Inputs,
     switches: u8,
     unit: u8,
+    mode: Option<Mode>,
     position: i64,
     changes: VecDeque<Change>,
     read: [u16; 125],
@@ -58,6 +60,7 @@ impl Drive {
             inputs: Inputs::default(),
             switches: setup.switches,
             unit: 0,
+            mode: None,
             position: setup.position,
             changes: VecDeque::with_capacity(8),
             read: [0; 125],
@@ -86,14 +89,10 @@ impl Drive {
         &self.bank
     }
 
-    /// The serial settings that its parameters ask for, and whether they ask for ASCII. `None` where a
-    /// parameter holds a code that stands for nothing.
-    pub fn settings(&self) -> Option<(Settings, bool)> {
-        let line = &self.model.line;
-        let baud = line.baud.decode(self.bank.value(&self.model, line.baud.row))?;
-        let WireFormat { ascii, format } =
-            line.format.decode(self.bank.value(&self.model, line.format.row))?;
-        Some((Settings { baud, format }, ascii))
+    /// The mode that it talks in. `None` where a parameter held a code that stands for nothing when it took
+    /// effect: such a drive hears nobody.
+    pub fn mode(&self) -> Option<Mode> {
+        self.mode
     }
 
     /// Answers a request that arrived at `now`, or says why not.
@@ -111,13 +110,8 @@ impl Drive {
                 self.write(now, span, values)?;
                 Ok(Response::WriteMany(span))
             }
-            Err(malformed) => Err(self.refuse_malformed(malformed)),
+            Err(malformed) => Err(self.refuse_malformed(pdu, malformed)),
         }
-    }
-
-    /// The exception that answers a refusal.
-    pub fn exception(pdu: &[u8], refusal: Refusal) -> Exception {
-        Exception { function: pdu.first().copied().unwrap_or(0), code: refusal.code }
     }
 
     /// Trips with `cause`, if the model has an alarm for it.
@@ -186,8 +180,9 @@ impl Drive {
         self.answer_causes(causes)
     }
 
-    fn refuse_malformed(&self, malformed: Malformed) -> Refusal {
-        let most = self.model.line.max_read;
+    fn refuse_malformed(&self, pdu: &[u8], malformed: Malformed) -> Refusal {
+        let line = &self.model.line;
+        let most = if pdu.first() == Some(&READ) { line.max_read } else { line.max_write };
         let mut causes = Causes::default();
         match malformed {
             Malformed::Function(code) => causes.meet(Cause::Function, Detail::Function(code)),
@@ -218,7 +213,12 @@ impl Drive {
         self.holds.iter_mut().for_each(Hold::stop);
         self.inputs = Inputs::default();
         self.unit = self.unit_asked_for();
+        let mode = self.mode_asked_for();
+        let from = std::mem::replace(&mut self.mode, mode);
         self.changes.push_back(Change::PoweredOn);
+        if from.is_some() && from != mode {
+            self.changes.push_back(Change::Mode { from, to: mode });
+        }
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
     }
@@ -232,6 +232,15 @@ impl Drive {
             (0, unit) => unit,
             (switches, _) => switches,
         }
+    }
+
+    /// The mode that the parameters ask for.
+    fn mode_asked_for(&self) -> Option<Mode> {
+        let line = &self.model.line;
+        let baud = line.baud.decode(self.bank.value(&self.model, line.baud.row))?;
+        let WireFormat { ascii, format } =
+            line.format.decode(self.bank.value(&self.model, line.format.row))?;
+        Some(Mode { ascii, settings: Settings { baud, format } })
     }
 
     fn act(&mut self, now: Instant, action: Action) {
@@ -252,6 +261,7 @@ impl Drive {
                 self.bank.restore_factory(&self.model, self.station);
                 self.changes.push_back(Change::FactoryRestored);
                 self.gather_inputs();
+                self.follow_line_settings();
             }
             Action::PowerCycle => self.power_cycle(now),
         }

@@ -11,7 +11,7 @@ impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address. Rows that only hold a value react to
     /// nothing: whoever needs the value reads it.
     pub(super) fn react(&mut self, now: Instant, plan: &WritePlan) {
-        let mut inputs = false;
+        let (mut inputs, mut line) = (false, false);
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {
                 Reaction::None => {}
@@ -22,7 +22,7 @@ impl Drive {
                     self.holds[usize::from(word)].refresh(now, time);
                 }
                 Reaction::Command(index) => self.command(now, index, row, raw),
-                Reaction::Unit => self.change_unit(row),
+                Reaction::Line => line = true,
             }
             if self.model.map.row(row).clears {
                 self.bank.set(row, 0);
@@ -30,6 +30,9 @@ impl Drive {
         }
         if inputs {
             self.gather_inputs();
+        }
+        if line {
+            self.follow_line_settings();
         }
     }
 
@@ -69,12 +72,20 @@ impl Drive {
         }
     }
 
-    fn change_unit(&mut self, row: RowId) {
-        let asked = self.unit_asked_for();
-        if self.model.map.row(row).applies == Applies::PowerOn || asked == self.unit {
-            return;
+    /// Puts a new address, speed or format in force, as far as it does not wait for power-on.
+    pub(super) fn follow_line_settings(&mut self) {
+        let line = &self.model.line;
+        let waits = |row| self.model.map.row(row).applies == Applies::PowerOn;
+        let mode_waits = waits(line.baud.row) || waits(line.format.row);
+        let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for() };
+        let mode = if mode_waits { self.mode } else { self.mode_asked_for() };
+        if unit != self.unit {
+            let from = std::mem::replace(&mut self.unit, unit);
+            self.changes.push_back(Change::Unit { from, to: unit });
         }
-        let from = std::mem::replace(&mut self.unit, asked);
-        self.changes.push_back(Change::Unit { from, to: asked });
+        if mode != self.mode {
+            let from = std::mem::replace(&mut self.mode, mode);
+            self.changes.push_back(Change::Mode { from, to: mode });
+        }
     }
 }

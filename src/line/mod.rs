@@ -9,10 +9,8 @@ mod ascii;
 mod follow;
 mod mbap;
 mod rtu;
-mod settings;
 
 pub use follow::Foreign;
-pub use settings::{Format, Parity, Settings};
 
 use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;

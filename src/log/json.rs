@@ -60,6 +60,7 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
         What::Noise { head, len, why } => {
             ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why)}))
         }
+        What::Moved(mode) => ("line_moved", json!({"mode": mode.to_string()})),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
         What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
     }
@@ -131,6 +132,10 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Stored => ("stored", json!({})),
         Change::FactoryRestored => ("factory_restored", json!({})),
         Change::Unit { from, to } => ("unit_changed", json!({"from": from, "to": to})),
+        Change::Mode { from, to } => {
+            let text = |mode: &Option<crate::serial::Mode>| mode.map(|mode| mode.to_string());
+            ("mode_changed", json!({"from": text(from), "to": text(to)}))
+        }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();
             let name = terminals.map(|it| it.name(usize::from(*index)));

@@ -1,4 +1,4 @@
-//! Requests and answers in terms of rows: `P03.04 jog speed = 7000`.
+//! Requests and answers in terms of rows: `C03.04 jog speed = 7000`.
 
 use crate::bank::row_value;
 use crate::drive::Drive;
@@ -83,7 +83,7 @@ fn items(drive: &Drive, span: Span, word: impl Fn(usize) -> Option<u16>) -> Vec<
     items
 }
 
-/// `P03.04 jog speed = 7000`.
+/// `C03.04 jog speed = 7000`.
 pub fn text(drive: &Drive, item: Item) -> String {
     let map = &drive.model().map;
     match item {

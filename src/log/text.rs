@@ -11,7 +11,7 @@ use crate::words::Word;
 /// Rows of one transaction that are told; the rest is counted.
 const ROWS_TOLD: usize = 6;
 
-/// `0.532 unit 1 write P03.04 jog speed = 7000: refused, range 0..6000 -> exception 03`.
+/// `0.532 unit 1 write C03.04 jog speed = 7000: refused, range 0..6000 -> exception 03`.
 pub fn line(event: &Event, bus: &Bus) -> String {
     format!("{} {}", event.at, what(&event.what, bus))
 }
@@ -38,9 +38,7 @@ fn what(what: &What, bus: &Bus) -> String {
         }
         What::Foreign { unit, pdu, answer } => {
             let kind = if *answer { "answer of" } else { "request to" };
-            let none = bus.find(*unit).is_none();
-            let here =
-                if none && !*answer { format!("; {}", who_is_here(bus)) } else { String::new() };
+            let here = if *answer { String::new() } else { format!("; {}", who_is_here(*unit, bus)) };
             format!("foreign {kind} unit {unit}: {}: silence{here}", to_hex(pdu))
         }
         What::BadCrc { frame, crc, answered } => {
@@ -56,10 +54,10 @@ fn what(what: &What, bus: &Bus) -> String {
             format!("bad ASCII frame `:{characters}`, {}: silence", why::ascii(*why))
         }
         What::Noise { head, len, why } => {
-            let some = &head[..head.len().min(16)];
-            let more = if *len > some.len() { " ..." } else { "" };
-            format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(some))
+            let more = if *len > head.len() { " ..." } else { "" };
+            format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(head))
         }
+        What::Moved(mode) => format!("the line is {mode} from now on"),
         What::Lost(why) => format!("stream closed, {}", why::header(*why)),
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), change))
@@ -106,7 +104,14 @@ fn list(drive: &Drive, items: &[rows::Item]) -> String {
     }
 }
 
-fn who_is_here(bus: &Bus) -> String {
+/// Why nobody answers a request to `unit`.
+fn who_is_here(unit: u8, bus: &Bus) -> String {
+    if let Some((_, deaf)) = bus.drives().find(|(_, drive)| drive.unit() == unit) {
+        return match deaf.mode() {
+            Some(mode) => format!("the drive listens at {mode}"),
+            None => "the drive hears nobody".into(),
+        };
+    }
     let mut units: Vec<u8> = bus.drives().map(|(_, drive)| drive.unit()).collect();
     units.sort_unstable();
     let units: Vec<_> = units.iter().map(u8::to_string).collect();
@@ -138,6 +143,10 @@ fn change_text(drive: &Drive, change: &Change) -> String {
         Change::FactoryRestored => "all parameters as from the factory".into(),
         Change::Unit { from, to } => {
             format!("answers to unit {to} from now on, no longer to {from}")
+        }
+        Change::Mode { to: Some(to), .. } => format!("listens at {to} from now on"),
+        Change::Mode { to: None, .. } => {
+            "hears nobody: its parameters hold codes that stand for no speed or format".into()
         }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();

@@ -7,7 +7,7 @@ use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::words::{Cause, Detail, Refusal};
 
-/// `range 0..6000`, `0x0026 is not mapped`.
+/// `range 0..6000`, `0x1234 is not mapped`.
 pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
     let map = &drive.model().map;
     match (refusal.cause, refusal.detail) {

@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn placeholders() {
-        assert_eq!(number("P04.{n:02} of {n}", 3), "P04.03 of 3");
+        assert_eq!(number("C04.{n:02} of {n}", 3), "C04.03 of 3");
         assert_eq!(number("x{n:04X}", 0x42A), "x042A");
         assert_eq!(number("no {number", 1), "no {number");
         assert_eq!(number("{n:x} {n:99}", 7), "7 00000007");

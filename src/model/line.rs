@@ -5,8 +5,8 @@ use super::raw::{
 };
 use super::rows::{Compiled, order};
 use super::{Access, RowId};
-use crate::line::Format;
 use crate::problem::{Path, Problem, suggest};
+use crate::serial::Format;
 use crate::wire::LengthCheck;
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
 use crate::words::{Cause, Word};
@@ -139,6 +139,10 @@ pub(super) fn compile(
     problems: &mut Vec<Problem>,
 ) -> Option<LineRules> {
     let path = Path::root().key("line");
+    if raw.functions.is_empty() {
+        let what = "a drive without functions answers nothing";
+        problems.push(Problem::value(path.key("functions"), what).advise("0x03, 0x06 and 0x10"));
+    }
     for (i, function) in raw.functions.iter().enumerate() {
         if ![READ, WRITE_ONE, WRITE_MANY].contains(function) {
             let what = format!("function 0x{function:02X} is not one that can be emulated");
@@ -162,13 +166,19 @@ pub(super) fn compile(
         problems.push(Problem::value(unit_path.key("switches"), what));
     }
     let unit = rows.find(&raw.unit.register, &unit_path.key("register"), problems);
+    if let Some(row) = unit.map(|id| rows.map.row(id)).filter(|row| !row.admits(0))
+        && raw.unit.zero != 0
+    {
+        let what = format!("`zero` changes nothing, since {} is never 0", row.id);
+        problems.push(Problem::key(unit_path.key("zero"), what).advise("leave it out"));
+    }
     let baud_path = path.key("baud");
     if let Some(code) = raw.baud.codes.iter().find(|(_, baud)| !(50..=4_000_000).contains(*baud)) {
         let what = format!("{} is no baud rate", code.1);
         problems.push(Problem::value(baud_path.key("codes").key(code.0), what));
     }
     let baud = rows.find(&raw.baud.register, &baud_path.key("register"), problems);
-    digit(raw.baud.digit, &baud_path, problems);
+    coded(baud, raw.baud.digit, &raw.baud.codes, rows, &baud_path, problems);
     let word_order = word_order(&raw.word_order, rows, &path.key("word_order"), problems);
     let format = format(&raw.format, rows, &path.key("format"), problems);
     let refuse = refuse(raw, rows, &path.key("refuse"), problems);
@@ -209,10 +219,34 @@ fn within(
     }
 }
 
-fn digit(digit: Option<u8>, path: &Path, problems: &mut Vec<Problem>) {
+/// Does each code have a value of the row, or of one hex digit of it, and the factory value a code?
+fn coded<T>(
+    row: Option<RowId>,
+    digit: Option<u8>,
+    codes: &BTreeMap<i64, T>,
+    rows: &Compiled,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) {
     if digit.is_some_and(|digit| digit > 3) {
         let what = "a word has hex digits 0 to 3, counted from the right";
         problems.push(Problem::value(path.key("digit"), what));
+        return;
+    }
+    let Some(row) = row.map(|row| rows.map.row(row)) else { return };
+    let of = |value: i64| digit.map_or(value, |digit| value >> (4 * digit) & 0xF);
+    let holds = |code: i64| match digit {
+        None => row.admits(code),
+        Some(_) => (0..=0xFFFF).any(|value| row.admits(value) && of(value) == code),
+    };
+    for code in codes.keys().filter(|code| !holds(**code)) {
+        let what = format!("{} never holds {code}", row.id);
+        problems.push(Problem::key(path.key("codes").key(code), what));
+    }
+    let init = of(row.kind.value(row.init));
+    if row.admits(row.kind.value(row.init)) && !codes.contains_key(&init) {
+        let what = format!("{} leaves the factory as {init}, and no code stands for that", row.id);
+        problems.push(Problem::key(path.key("codes"), what));
     }
 }
 
@@ -222,7 +256,8 @@ fn format(
     path: &Path,
     problems: &mut Vec<Problem>,
 ) -> Option<Coded<WireFormat>> {
-    digit(raw.digit, path, problems);
+    let row = rows.find(&raw.register, &path.key("register"), problems);
+    coded(row, raw.digit, &raw.codes, rows, path, problems);
     let mut codes = BTreeMap::new();
     for (code, text) in &raw.codes {
         let (ascii, shape) = match text.strip_prefix("ascii ") {
@@ -241,8 +276,7 @@ fn format(
             Err(what) => problems.push(Problem::value(path, what)),
         }
     }
-    let row = rows.find(&raw.register, &path.key("register"), problems)?;
-    Some(Coded { row, digit: raw.digit, codes })
+    Some(Coded { row: row?, digit: raw.digit, codes })
 }
 
 fn word_order(
@@ -255,10 +289,7 @@ fn word_order(
         RawWordOrder::Fixed(fixed) => WordOrder::Fixed(order(*fixed)),
         RawWordOrder::Register { register, codes } => {
             let row = rows.find(register, &path.key("register"), problems)?;
-            for value in codes.keys().filter(|value| !rows.map.row(row).admits(**value)) {
-                let what = format!("{register} never holds {value}");
-                problems.push(Problem::key(path.key("codes").key(value), what));
-            }
+            coded(Some(row), None, codes, rows, path, problems);
             let codes = codes.iter().map(|(value, raw)| (*value, order(*raw))).collect();
             WordOrder::Row { row, codes }
         }

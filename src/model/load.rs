@@ -136,7 +136,8 @@ fn stations(raw: &RawModel, rows: &rows::Compiled, problems: &mut Vec<Problem>) 
             let path = path.key(id);
             let Some(row) = rows.find(id, &path, problems) else { continue };
             if !rows.map.row(row).admits(*value) {
-                let what = format!("{value} lies outside {}", rows.map.row(row).range_text());
+                let what =
+                    format!("{value} lies outside the range {}", rows.map.row(row).range_text());
                 problems.push(Problem::value(path, what));
             }
             init.push((row, rows.map.row(row).kind.raw(*value)));

@@ -63,16 +63,18 @@ pub(super) fn choose(
         chosen.insert(name.clone(), option.default.clone());
     }
     for (name, choice) in wishes {
+        let path = Path::root().key("options").key(name);
         let Some(option) = options.get(name) else {
             let what = format!("no option `{name}`");
             let advice = suggest::did_you_mean(name, options.keys().map(String::as_str));
-            problems.push(Problem::key(Path::root().key("options"), what).advise_if(advice));
+            problems.push(Problem::key(path, what).advise_if(advice));
             continue;
         };
         if !option.choices.contains_key(choice) {
             let all: Vec<_> = option.choices.keys().map(String::as_str).collect();
             let what = format!("no choice `{choice}`; there are {}", all.join(", "));
-            problems.push(Problem::key(Path::root().key("options").key(name), what));
+            let advice = suggest::did_you_mean(choice, all);
+            problems.push(Problem::value(path, what).advise_if(advice));
             continue;
         }
         chosen.insert(name.clone(), choice.clone());

@@ -193,7 +193,7 @@ impl Map {
         if address > self.top { Located::Beyond } else { Located::Hole }
     }
 
-    /// The row called `name`: its id, or its address in hex (`0x0304`, `0304H`) or decimal.
+    /// The row called `name`: its id, or its address in hex (`0x1234`, `1234H`) or decimal.
     pub fn find(&self, name: &str) -> Option<RowId> {
         if let Some((id, _)) = self.rows().find(|(_, row)| row.id == name) {
             return Some(id);
@@ -284,7 +284,7 @@ impl Kind {
     }
 }
 
-/// Reads `0x0304`, `0304H` or `772`.
+/// Reads `0x1234`, `1234H` or `4660`.
 pub(crate) fn parse_address(text: &str) -> Option<u16> {
     let lower = text.to_ascii_lowercase();
     if let Some(hex) = lower.strip_prefix("0x") {
@@ -311,8 +311,8 @@ mod tests {
 
     #[test]
     fn addresses_as_people_write_them() {
-        for text in ["0x0304", "0304H", "0304h", "772"] {
-            assert_eq!(parse_address(text), Some(0x0304), "{text}");
+        for text in ["0x1234", "1234H", "1234h", "4660"] {
+            assert_eq!(parse_address(text), Some(0x1234), "{text}");
         }
         for text in ["", "x", "0x10000", "H", "-1"] {
             assert_eq!(parse_address(text), None, "{text}");

@@ -98,7 +98,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         let what = format!("{} does not fit the type, {low}..{high}", raw.init);
         problems.push(Problem::value(path.key("init"), what));
     } else if !in_range {
-        let what = format!("init {} lies outside {}", raw.init, span_text(&spans));
+        let what = format!("init {} lies outside the range {}", raw.init, span_text(&spans));
         let advice = match raw.init {
             0 => "give an init inside it; without one it is 0",
             _ => "give an init inside it, or widen the range",

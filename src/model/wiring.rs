@@ -152,8 +152,8 @@ pub enum Reaction {
     InputWord(u8),
     /// Commands, by index.
     Command(u8),
-    /// The unit address.
-    Unit,
+    /// How the drive is reached: unit address, speed, format.
+    Line,
 }
 
 /// When the drive is ready and what it does at power-on.

@@ -21,7 +21,7 @@ pub struct Problem {
     pub at: At,
     /// What is wrong, as one sentence without a full stop.
     pub what: String,
-    /// What to do about it, if there is something to say (`did you mean P06.04 (Jog speed)?`).
+    /// What to do about it, if there is something to say (`did you mean C06.04 (Jog speed)?`).
     pub advice: Option<String>,
     /// Where in the text, when the path can't say (a syntax error, the second of two equal keys).
     pub mark: Option<Mark>,

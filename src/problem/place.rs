@@ -137,7 +137,7 @@ mod tests {
 model: {vendor: Acme, name: S1, zh: 伺服, series: [一, two, 3]}   # behind
 axes:
   A:
-    jog: P06.04
+    jog: C06.04
     空: \"quo ted\"
     left_out:
     next:
@@ -171,7 +171,7 @@ tagged: !!str 17
             ("model.series.#1", "2:two", "2:two"),
             ("axes", "3:axes", "3:axes"),
             ("axes.A", "4:A", "4:A"),
-            ("axes.A.jog", "5:jog", "5:P06.04"),
+            ("axes.A.jog", "5:jog", "5:C06.04"),
             ("axes.A.空", "6:空", "6:\"quo ted\""),
             ("axes.A.left_out", "7:left_out", "7:left_out"),
             ("axes.A.next", "8:next", "8:next"),
@@ -208,7 +208,7 @@ tagged: !!str 17
     fn falls_back_to_the_deepest_ancestor() {
         let (places, _) = Places::parse(TEXT);
         for (at, want) in [
-            ("axes.A.jog", "5:P06.04"),
+            ("axes.A.jog", "5:C06.04"),
             ("axes.A.nowhere.x", "4:A"),
             ("axes.A.jog.deeper", "5:jog"),
             ("model.series.#9", "2:series"),

@@ -100,7 +100,7 @@ options:
       exception: {line: {crc_error: 0x01}}
 axes:
   A:
-    quantities: {jog.speed: P06.40, jog.ramp: P06.05, home.speed_fast: P05.31, home.speed_slow: P05.32}
+    quantities: {jog.speed: C06.40, jog.ramp: C06.05, home.speed_fast: C05.31, home.speed_slow: C05.32}
     zh: {名: 点动速度, x: 中文}
 ";
 
@@ -116,8 +116,8 @@ axes:
             Problem::value(Path::root().key("nothing"), "no place for this").advise("none at all"),
             Problem::value(zh.key("x"), "no text"),
             Problem::value(zh.key("名"), "not\nASCII").advise("write Latin letters "),
-            Problem::value(quantities().key("jog.speed"), "no register `P06.40`")
-                .advise("did you mean P06.04 (Jog speed)?"),
+            Problem::value(quantities().key("jog.speed"), "no register `C06.40`")
+                .advise("did you mean C06.04 (Jog speed)?"),
             Problem::key(Path::root().key("axes").key("A").key("speed"), "unknown"),
             Problem { mark: Some(duplicate), ..Problem::value(Path::root(), "twice") },
         ];
@@ -134,9 +134,9 @@ m.yaml:3:15: twice
 m.yaml:10:3: axes.A.speed: unknown
    |   A:
    |   ^
-m.yaml:11:29: axes.A.quantities[jog.speed]: no register `P06.40`
-   |     quantities: {jog.speed: P06.40, jog.ramp: P06.05, home.speed_fast: P05.31, home.speed_slow: ...
-   |                             ^^^^^^ did you mean P06.04 (Jog speed)?
+m.yaml:11:29: axes.A.quantities[jog.speed]: no register `C06.40`
+   |     quantities: {jog.speed: C06.40, jog.ramp: C06.05, home.speed_fast: C05.31, home.speed_slow: ...
+   |                             ^^^^^^ did you mean C06.04 (Jog speed)?
 m.yaml:12:13: axes.A.zh[名]: not ASCII
    |     zh: {名: 点动速度, x: 中文}
    |              ^^^^^^^^ write Latin letters

@@ -72,7 +72,7 @@ pub fn entries<'a>(
 ) -> Vec<(String, Path, &'a Value)> {
     let Some(value) = value else { return Vec::new() };
     let Value::Mapping(map) = value else {
-        problems.push(Problem::value(path.clone(), "this is a map of names"));
+        problems.push(Problem::value(path.clone(), "a map of names should stand here"));
         return Vec::new();
     };
     let entry = |(key, value): (&'a Value, &'a Value)| {

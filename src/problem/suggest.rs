@@ -42,7 +42,7 @@ mod tests {
     #[test]
     fn nearest_word() {
         for (word, candidates, want) in [
-            ("P06.40", &["P05.31", "P06.04", "P07.40x"][..], Some("P06.04")),
+            ("C06.40", &["C05.31", "C06.04", "C07.40x"][..], Some("C06.04")),
             ("jog.sped", &["jog.accel", "jog.speed", "jog.pos"], Some("jog.speed")),
             ("fuctions", &["format", "functions", "faults"], Some("functions")),
             ("FUNCTIONS", &["function", "functions"], Some("functions")),

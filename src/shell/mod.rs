@@ -15,7 +15,7 @@ mod stop;
 
 pub use clock::Clock;
 pub use diagnostics::{Diagnostics, diagnose};
-pub use library::FileLibrary;
+pub use library::{FileLibrary, plain};
 pub use logger::{LogFormat, Logger};
 pub use run::{OpenError, RunOptions, run};
-pub use serve::{Reopen, Served, serve_stream, serve_tty};
+pub use serve::{Frames, Reopen, Served, serve_stream, serve_tty};

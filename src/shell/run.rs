@@ -4,17 +4,16 @@ use super::clock::Clock;
 use super::logger::{LogFormat, Logger};
 use super::port::{Listener, Pty, Serial, Tty};
 use super::ready::{self, Endpoint, Ready, Unit};
-use super::serve::{Reopen, Served, serve_tcp, serve_tty};
+use super::serve::{Frames, Reopen, Served, serve_tcp, serve_tty};
 use super::stop;
 use crate::bench::{Bench, BenchLine, PortSpec};
 use crate::bus::Bus;
-use crate::line::{Framing, Parity, Settings};
-use std::cell::RefCell;
+use crate::serial::{Parity, Settings};
 use std::future::Future;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex};
 use thiserror::Error;
 use tracing::info;
 
@@ -57,16 +56,16 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     let logger = Logger::start(options.format, names, options.log_file.as_deref());
     let logger = logger
         .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
-    let log = Rc::new(RefCell::new(logger));
-    info!("seed {}", options.seed);
+    let log = Arc::new(Mutex::new(logger));
     let clock = Clock::start(options.rate);
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
-    for line in bench.lines {
-        let (task, endpoint) = open(&line, clock, &log, &options.base)?;
-        introduce(&line, &endpoint);
+    for line in &bench.lines {
+        let (task, endpoint) = open(line, clock, &log, &options.base)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
+    info!("seed {}", options.seed);
+    bench.lines.iter().zip(&endpoints).for_each(|(line, endpoint)| introduce(line, endpoint));
     if let Some(path) = &options.ready_file {
         let ready = Ready { seed: options.seed, endpoints };
         ready::write(path, &ready).map_err(|error| OpenError::File(path.clone(), error))?;
@@ -84,50 +83,45 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
 fn open(
     line: &BenchLine,
     clock: Clock,
-    log: &Rc<RefCell<Logger>>,
+    log: &Arc<Mutex<Logger>>,
     base: &Path,
 ) -> Result<(Task, Endpoint), OpenError> {
     let (bus, name) = (line.bus(), line.name.clone());
-    let (wire, settings) = (line.wire, line.wire.settings);
+    let (wire, settings) = (line.wire, line.wire.mode.settings);
     let mut endpoint = endpoint(line, &bus);
-    let serial_framing = wire.framing(clock.rate());
-    let served = |framing: Framing| Served { name, bus, clock, framing, log: Some(log.clone()) };
-    let refused = |what: &str| {
-        let what = what.to_owned();
-        move |error: io::Error| OpenError::Port(format!("{what}: {error}"))
-    };
+    let served = |frames| Served { name, bus, clock, frames, log: Some(log.clone()) };
+    let refused = |error: io::Error| OpenError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {
             let link = link.as_ref().map(|link| base.join(link));
-            let what =
-                link.as_ref().map_or("pseudo-terminal".into(), |it| it.display().to_string());
-            let pty = open_pty(link.as_deref(), settings).map_err(refused(&what))?;
+            let pty = open_pty(link.as_deref(), settings).map_err(refused)?;
             endpoint.path = Some(pty.path().display().to_string());
             endpoint.link = link.map(|link| link.display().to_string());
-            let reopen: Reopen = Box::new(move || Ok(Tty::Pty(open_pty(None, settings)?)));
-            Box::pin(serve_tty(served(serial_framing), Tty::Pty(pty), settings, reopen))
+            let reopen: Reopen = Box::new(|settings| Ok(Tty::Pty(open_pty(None, settings)?)));
+            Box::pin(serve_tty(served(Frames::Serial(wire)), Tty::Pty(pty), reopen))
         }
         PortSpec::Serial(path) => {
-            let serial = open_serial(path, settings).map_err(refused(path))?;
+            let serial = open_serial(path, settings).map_err(refused)?;
             if let Some(note) = serial.note() {
                 tracing::warn!("{note}");
             }
             endpoint.path = Some(path.clone());
             let path = path.clone();
-            let reopen: Reopen = Box::new(move || Ok(Tty::Serial(open_serial(&path, settings)?)));
-            Box::pin(serve_tty(served(serial_framing), Tty::Serial(serial), settings, reopen))
+            let reopen: Reopen =
+                Box::new(move |settings| Ok(Tty::Serial(open_serial(&path, settings)?)));
+            Box::pin(serve_tty(served(Frames::Serial(wire)), Tty::Serial(serial), reopen))
         }
         PortSpec::Tcp(addr) => {
-            let listener = Listener::bind(addr).map_err(refused(addr))?;
+            let listener = Listener::bind(addr).map_err(refused)?;
             endpoint.addr = Some(local(&listener, addr)?);
             endpoint.line = None;
             endpoint.framing = "mbap";
-            Box::pin(serve_tcp(served(Framing::Mbap), listener))
+            Box::pin(serve_tcp(served(Frames::Mbap), listener))
         }
         PortSpec::RtuOverTcp(addr) => {
-            let listener = Listener::bind(addr).map_err(refused(addr))?;
+            let listener = Listener::bind(addr).map_err(refused)?;
             endpoint.addr = Some(local(&listener, addr)?);
-            Box::pin(serve_tcp(served(serial_framing), listener))
+            Box::pin(serve_tcp(served(Frames::Serial(wire)), listener))
         }
     };
     Ok((task, endpoint))
@@ -166,8 +160,8 @@ fn endpoint(line: &BenchLine, bus: &Bus) -> Endpoint {
         link: None,
         addr: None,
         name: line.name.clone(),
-        line: Some(line.wire.settings.to_string()),
-        framing: if line.wire.ascii { "ascii" } else { "rtu" },
+        line: Some(line.wire.mode.settings.to_string()),
+        framing: if line.wire.mode.ascii { "ascii" } else { "rtu" },
         units: bus.drives().map(|(_, drive)| unit(drive)).collect(),
     }
 }
@@ -183,7 +177,7 @@ fn introduce(line: &BenchLine, endpoint: &Endpoint) {
         None => "Modbus TCP".into(),
     };
     info!("{}: {units} on {place} ({settings})", endpoint.name);
-    let parity = line.wire.settings.format.parity;
+    let parity = line.wire.mode.settings.format.parity;
     if matches!(line.port, PortSpec::Pty(_)) && parity != Parity::None {
         info!("a pseudo-terminal carries no parity bit: open {place} with parity none");
     }
@@ -198,9 +192,9 @@ fn suggestion(line: &BenchLine, endpoint: &Endpoint, place: &str) -> Option<Stri
     let unit = endpoint.units.iter().find(|it| it.unit != crate::wire::BROADCAST)?.unit;
     let row = device.model.showcase()?;
     let read = format!("-a {unit} -0 -r {} -c {} -1", row.at, row.kind.words());
-    let Settings { baud, format } = line.wire.settings;
+    let Settings { baud, format } = line.wire.mode.settings;
     match &line.port {
-        PortSpec::Pty(_) | PortSpec::Serial(_) if !line.wire.ascii => {
+        PortSpec::Pty(_) | PortSpec::Serial(_) if !line.wire.mode.ascii => {
             let parity = match format.parity {
                 _ if matches!(line.port, PortSpec::Pty(_)) => "none",
                 Parity::None => "none",

@@ -10,12 +10,13 @@ pub use tty::{Reopen, serve_tty};
 
 use super::clock::Clock;
 use super::logger::Logger;
+use crate::bench::WireSpec;
 use crate::bus::{Bus, LinkId, Output, Wake, WakeReason};
 use crate::line::Framing;
+use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
 use crate::wire::Frame;
-use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A line as a task serves it.
 #[derive(Debug)]
@@ -27,15 +28,25 @@ pub struct Served {
     /// The time.
     pub clock: Clock,
     /// How frames are told apart.
-    pub framing: Framing,
+    pub frames: Frames,
     /// The log, shared by all lines; none in a test.
-    pub log: Option<Rc<RefCell<Logger>>>,
+    pub log: Option<Arc<Mutex<Logger>>>,
+}
+
+/// How frames are told apart on a port.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Frames {
+    /// As on a serial line that is set so.
+    Serial(WireSpec),
+    /// Modbus TCP.
+    Mbap,
 }
 
 /// Something for the port to do.
 enum Send {
     Frame(LinkId, Frame),
     Close(LinkId),
+    Move(Mode),
 }
 
 impl Served {
@@ -45,13 +56,43 @@ impl Served {
             match self.bus.poll_output()? {
                 Output::Transmit { link, frame } => return Some(Send::Frame(link, frame)),
                 Output::Close(link) => return Some(Send::Close(link)),
+                Output::Moved(mode) => {
+                    self.moved(mode);
+                    return Some(Send::Move(mode));
+                }
                 Output::Event(event) => {
                     if let Some(log) = &self.log {
-                        log.borrow_mut().log(&event, &self.name, &self.bus);
+                        log.lock()
+                            .unwrap_or_else(PoisonError::into_inner)
+                            .log(&event, &self.name, &self.bus);
                     }
                 }
             }
         }
+    }
+
+    /// How frames are told apart on each link.
+    fn framing(&self) -> Framing {
+        match self.frames {
+            Frames::Serial(wire) => wire.framing(self.clock.rate()),
+            Frames::Mbap => Framing::Mbap,
+        }
+    }
+
+    /// Speed and format of the line.
+    fn settings(&self) -> Settings {
+        match self.frames {
+            Frames::Serial(wire) => wire.mode.settings,
+            Frames::Mbap => Settings::STANDARD,
+        }
+    }
+
+    /// The line talks in another mode: so do all its links.
+    fn moved(&mut self, mode: Mode) {
+        if let Frames::Serial(wire) = &mut self.frames {
+            wire.mode = mode;
+        }
+        self.bus.reframe_all(self.framing());
     }
 
     /// Sleeps until the bus wants to be woken.

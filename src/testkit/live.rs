@@ -4,18 +4,21 @@
 //! time at all.
 //!
 //! ```
+//! use drivemu::model::builtin::Builtin;
 //! use drivemu::testkit::{Rig, live};
+//! use drivemu::wire::rtu;
 //! use tokio::io::{AsyncReadExt, AsyncWriteExt};
 //!
 //! # #[tokio::main(flavor = "current_thread")]
 //! # async fn main() -> std::io::Result<()> {
-//! let drive = Rig::builtin("yako-closed-loop").expect("an embedded model");
+//! let drive = Rig::builtin(Builtin::default_name()).expect("an embedded model");
+//! let request = rtu::encode(drive.drive().unit(), &[0x2B, 0x0E, 0x01, 0x00]);
 //! let (mut master, serve) = live::stream(drive);
 //! let asks = async {
-//!     master.write_all(&[0x01, 0x03, 0x00, 0x23, 0x00, 0x01, 0x75, 0xC0]).await?;
-//!     let mut answer = [0; 7];
+//!     master.write_all(&request).await?;
+//!     let mut answer = [0; 5];
 //!     master.read_exact(&mut answer).await?;
-//!     assert_eq!(answer[..5], [0x01, 0x03, 0x02, 0x00, 0x3C]);
+//!     assert_eq!(answer[1], 0xAB, "no drive knows function 2B, so an exception answers");
 //!     drop(master);
 //!     std::io::Result::Ok(())
 //! };
@@ -25,7 +28,7 @@
 //! ```
 
 use super::Rig;
-use crate::shell::{Clock, Served, serve_stream};
+use crate::shell::{Clock, Frames, Served, serve_stream};
 use std::future::Future;
 use std::io;
 use tokio::io::DuplexStream;
@@ -34,10 +37,10 @@ use tokio::io::DuplexStream;
 /// future beside the master (`tokio::spawn`, `try_join!`); it ends when the stream is dropped.
 pub fn stream(rig: Rig) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
     let (master, drive) = tokio::io::duplex(4096);
-    let (bus, framing) = rig.into_bus();
+    let (bus, frames) = (rig.fresh_bus(), Frames::Serial(rig.wire()));
     let serve = async move {
         let clock = Clock::start(1.0);
-        let line = Served { name: "line".into(), bus, clock, framing, log: None };
+        let line = Served { name: "line".into(), bus, clock, frames, log: None };
         serve_stream(line, drive).await
     };
     (master, serve)

@@ -6,7 +6,7 @@ use crate::bench::{
 use crate::bus::{Bus, Command, CommandError, LinkId, Output};
 use crate::drive::Drive;
 use crate::event::{DriveId, Event};
-use crate::line::{Framing, Settings};
+use crate::line::Framing;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
 use crate::time::{Duration, Instant};
@@ -17,7 +17,6 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Rig {
     line: BenchLine,
-    framing: Framing,
     bus: Bus,
     link: LinkId,
     now: Instant,
@@ -79,22 +78,21 @@ impl Rig {
         let mut bus = line.bus();
         let link = bus.open(framing);
         let now = Instant::ZERO;
-        let mut rig = Self { line, framing, bus, link, now, events: Vec::new() };
+        let mut rig = Self { line, bus, link, now, events: Vec::new() };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
         let ready = ready.max().unwrap_or_default();
         rig.advance(ready);
         rig
     }
 
-    /// The drives as they were before anything happened, and the framing of their line.
-    #[cfg(feature = "cli")]
-    pub(super) fn into_bus(self) -> (Bus, Framing) {
-        (self.line.bus(), self.framing)
+    /// How the line is set.
+    pub fn wire(&self) -> WireSpec {
+        self.line.wire
     }
 
-    /// How the line is set.
-    pub fn settings(&self) -> Settings {
-        self.line.wire.settings
+    /// The same drives on a bus of their own, just switched on.
+    pub fn fresh_bus(&self) -> Bus {
+        self.line.bus()
     }
 
     /// The time.
@@ -192,6 +190,10 @@ impl Rig {
             match output {
                 Output::Transmit { frame, .. } => sent.extend_from_slice(&frame),
                 Output::Event(event) => self.events.push(event),
+                Output::Moved(mode) => {
+                    self.line.wire.mode = mode;
+                    self.bus.reframe_all(self.line.wire.framing(1.0));
+                }
                 Output::Close(_) => {}
             }
         }

@@ -41,7 +41,7 @@ pub fn encode(unit: u8, pdu: &[u8]) -> Frame {
 /// Reads the characters between `:` and CR LF into `into` and checks the LRC.
 pub fn decode<'a>(characters: &[u8], into: &'a mut Frame) -> Result<Adu<'a>, BadAscii> {
     // Unit, function and LRC at least.
-    if characters.len() % 2 != 0 || characters.len() < 6 {
+    if !characters.len().is_multiple_of(2) || characters.len() < 6 {
         return Err(BadAscii::Length(characters.len()));
     }
     *into = Frame::new();

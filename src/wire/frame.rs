@@ -1,32 +1,36 @@
-//! Bytes of one frame, held in place: an answer costs no allocation.
+//! Bytes of frames and PDUs, and what a frame says.
 
+use super::PDU_MAX;
 use std::fmt;
 use std::ops::Deref;
 
-/// Longest frame of all framings: ASCII, `:` + 2 × (1 + 253 + 1) digits + CR LF.
-const FRAME_MAX: usize = 513;
-
-/// The bytes of one frame on a line.
+/// Up to `N` bytes, held in place: an answer costs no allocation.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct Inline<const N: usize> {
     len: u16,
-    bytes: [u8; FRAME_MAX],
+    bytes: [u8; N],
 }
 
-impl Frame {
+/// The bytes of one frame on a line. The longest of all framings is ASCII: `:`, 2 × (1 + 253 + 1) digits, CR LF.
+pub type Frame = Inline<513>;
+
+/// Function code and data.
+pub type Pdu = Inline<PDU_MAX>;
+
+impl<const N: usize> Inline<N> {
     /// No bytes yet.
     pub const fn new() -> Self {
-        Self { len: 0, bytes: [0; FRAME_MAX] }
+        Self { len: 0, bytes: [0; N] }
     }
 
-    /// The first bytes of `bytes`, as many as a frame holds.
+    /// The first bytes of `bytes`, as many as fit.
     pub fn from_slice(bytes: &[u8]) -> Self {
-        let mut frame = Self::new();
-        frame.extend(&bytes[..bytes.len().min(FRAME_MAX)]);
-        frame
+        let mut inline = Self::new();
+        inline.extend(&bytes[..bytes.len().min(N)]);
+        inline
     }
 
-    /// Appends `byte`. A frame is sized for the longest PDU, so running over is a bug.
+    /// Appends `byte`. Frames and PDUs are sized for the longest there is, so running over is a bug.
     pub fn push(&mut self, byte: u8) {
         self.bytes[usize::from(self.len)] = byte;
         self.len += 1;
@@ -40,13 +44,13 @@ impl Frame {
     }
 }
 
-impl Default for Frame {
+impl<const N: usize> Default for Inline<N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Deref for Frame {
+impl<const N: usize> Deref for Inline<N> {
     type Target = [u8];
 
     fn deref(&self) -> &[u8] {
@@ -54,15 +58,15 @@ impl Deref for Frame {
     }
 }
 
-impl PartialEq for Frame {
+impl<const N: usize> PartialEq for Inline<N> {
     fn eq(&self, other: &Self) -> bool {
         **self == **other
     }
 }
 
-impl Eq for Frame {}
+impl<const N: usize> Eq for Inline<N> {}
 
-impl fmt::Debug for Frame {
+impl<const N: usize> fmt::Debug for Inline<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, byte) in self.iter().enumerate() {
             write!(f, "{}{byte:02X}", if i == 0 { "" } else { " " })?;

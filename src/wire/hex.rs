@@ -6,7 +6,7 @@
 /// What is no hex.
 pub fn hex(text: &str) -> Result<Vec<u8>, String> {
     let digits: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-    if !digits.is_ascii() || digits.len() % 2 != 0 {
+    if !digits.is_ascii() || !digits.len().is_multiple_of(2) {
         return Err(format!("`{text}` is not whole bytes in hex"));
     }
     let byte = |i| u8::from_str_radix(&digits[i..i + 2], 16);

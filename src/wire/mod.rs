@@ -13,7 +13,7 @@ mod response;
 pub mod rtu;
 
 pub use checksum::{crc16, lrc};
-pub use frame::{Adu, Frame, NoiseCause};
+pub use frame::{Adu, Frame, Inline, NoiseCause, Pdu};
 pub use request::{LengthCheck, Malformed, Request, Span, Words};
 pub use response::{Exception, Response};
 

@@ -1,6 +1,6 @@
 //! Answers: what a drive says back, and how it lies in a PDU.
 
-use super::Frame;
+use super::Pdu;
 use super::function::{EXCEPTION, READ, WRITE_MANY, WRITE_ONE};
 use super::request::Span;
 
@@ -35,8 +35,8 @@ pub enum Response<'a> {
 
 impl Response<'_> {
     /// The PDU as bytes.
-    pub fn encode(&self) -> Frame {
-        let mut pdu = Frame::new();
+    pub fn encode(&self) -> Pdu {
+        let mut pdu = Pdu::new();
         match *self {
             Self::Read(values) => {
                 pdu.extend(&[READ, (values.len() * 2) as u8]);

@@ -4,7 +4,9 @@ use super::{
     Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shown, Shows,
     Terminals, Wiring,
 };
-use crate::model::raw::{RawHold, RawInputs, RawModel, RawOutputs, RawShows, RawTerminals};
+use crate::model::raw::{
+    RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
+};
 use crate::model::rows::Compiled;
 use crate::model::{Access, RowId};
 use crate::problem::{At, Path, Problem, suggest};
@@ -29,10 +31,7 @@ pub(in crate::model) fn compile(
     let signals = Path::root().key("signals");
     wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
-    let path = Path::root().key("line").key("unit").key("register");
-    if let Some(row) = rows.map.rows().find(|(_, row)| row.id == raw.line.unit.register) {
-        wirer.react(row.0, Reaction::Unit, &path, At::Value);
-    }
+    wirer.line(&raw.line);
     wirer.servo(raw);
     wirer.alarms(raw);
     wirer.wiring
@@ -46,6 +45,21 @@ struct Wirer<'a> {
 }
 
 impl Wirer<'_> {
+    /// Rows that are not there were told of with the line.
+    fn line(&mut self, raw: &RawLine) {
+        let path = Path::root().key("line");
+        let registers = [
+            ("unit", &raw.unit.register),
+            ("baud", &raw.baud.register),
+            ("format", &raw.format.register),
+        ];
+        for (key, register) in registers {
+            if let Some((row, _)) = self.rows.map.rows().find(|(_, row)| row.id == *register) {
+                self.react(row, Reaction::Line, &path.key(key).key("register"), At::Value);
+            }
+        }
+    }
+
     fn quantities(&mut self, raw: &BTreeMap<String, String>) {
         let path = Path::root().key("quantities");
         for (name, register) in raw {
@@ -69,7 +83,7 @@ impl Wirer<'_> {
             _ => {
                 let symbols: Vec<_> = Unit::symbols_of(want).collect();
                 let what = format!("is in {}", symbols.join(" or "));
-                (what, format!("give the row `unit: {}`, or that with a factor", symbols[0]))
+                (what, format!("give the row `unit: {}`", symbols[0]))
             }
         };
         let have = match row.unit_text.as_str() {
@@ -85,6 +99,7 @@ impl Wirer<'_> {
         let codes = self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| {
             wirer.word::<Input>(name, "input signal", path)
         });
+        self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
         if let Some(raw) = &raw.terminals {
             let path = path.key("terminals");
             self.monitor(raw, &path, Shows::InputTerminals);
@@ -99,6 +114,7 @@ impl Wirer<'_> {
             let rows = self.row_list(&raw.registers, &path.key("registers"));
             for (i, row) in rows.iter().enumerate() {
                 let path = path.key("registers").index(i);
+                self.one_word(*row, &path);
                 self.writable(*row, &path, At::Value);
                 self.react(*row, Reaction::InputWord(i as u8), &path, At::Value);
             }
@@ -107,7 +123,8 @@ impl Wirer<'_> {
             for (i, row) in enabled_by.iter().enumerate() {
                 self.react(*row, Reaction::Inputs, &path.key("enabled_by").index(i), At::Value);
             }
-            let positions = self.positions(&codes, &raw.positions, words, &path);
+            let by_terminals = self.wiring.input_terminals.is_some();
+            let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
             let hold = raw.hold.as_ref().and_then(|raw| self.hold(raw, &path.key("hold")));
             self.wiring.input_words = Some(InputWords { rows, enabled_by, positions, hold });
         }
@@ -146,6 +163,7 @@ impl Wirer<'_> {
     fn outputs(&mut self, raw: &RawOutputs, path: &Path) {
         let codes =
             self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| wirer.shown(name, path));
+        self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
         if let Some(raw) = &raw.terminals {
             let path = path.key("terminals");
             self.monitor(raw, &path, Shows::OutputTerminals);
@@ -156,11 +174,13 @@ impl Wirer<'_> {
             let rows = self.row_list(&raw.registers, &path.key("registers"));
             for (i, row) in rows.iter().enumerate() {
                 let path = path.key("registers").index(i);
+                self.one_word(*row, &path);
                 self.show(*row, Shows::OutputWord(i as u8), &path, At::Value);
             }
             let words = raw.registers.len();
             let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
-            let positions = self.positions(&codes, &raw.positions, words, &path);
+            let by_terminals = self.wiring.output_terminals.is_some();
+            let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
             self.wiring.output_words = Some(OutputWords { enabled_by, positions });
         }
         for (register, bits) in &raw.bits {
@@ -297,6 +317,13 @@ impl Wirer<'_> {
         raw.iter().filter_map(entry).collect()
     }
 
+    fn codes_used(&mut self, codes: &BTreeMap<u16, String>, used: bool, path: &Path) {
+        if !used && !codes.is_empty() {
+            let what = "`codes` changes nothing without `terminals` or `words`";
+            self.problems.push(Problem::key(path.key("codes"), what).advise("leave it out"));
+        }
+    }
+
     fn row(&mut self, id: &str, path: &Path) -> Option<RowId> {
         self.rows.find(id, path, self.problems)
     }
@@ -328,6 +355,7 @@ impl Wirer<'_> {
         codes: &[(u16, S)],
         moved: &BTreeMap<u16, u16>,
         words: usize,
+        by_terminals: bool,
         path: &Path,
     ) -> Vec<(u16, S)> {
         for code in moved.keys().filter(|code| !codes.iter().any(|(it, _)| it == *code)) {
@@ -337,6 +365,10 @@ impl Wirer<'_> {
         let mut positions: Vec<(u16, S)> = Vec::new();
         for (code, signal) in codes {
             let position = moved.get(code).copied().unwrap_or(*code);
+            if by_terminals && !moved.contains_key(code) && usize::from(position) >= 16 * words {
+                // Out of reach of the words, but a terminal can have it.
+                continue;
+            }
             let what = if usize::from(position) >= 16 * words {
                 format!("no word has position {position}, the last is {}", 16 * words - 1)
             } else if positions.iter().any(|(taken, _)| *taken == position) {
@@ -392,6 +424,14 @@ impl Wirer<'_> {
             let what = format!("{} is read only, so no master can set it", row.id);
             let problem = Problem { at, ..Problem::value(path.clone(), what) };
             self.problems.push(problem.advise("give it `access: rw`"));
+        }
+    }
+
+    fn one_word(&mut self, row: RowId, path: &Path) {
+        let row = self.rows.map.row(row);
+        if row.kind.words() != 1 {
+            let what = format!("{} has two words, and each of these has 16 bits", row.id);
+            self.problems.push(Problem::value(path.clone(), what).advise("give it `type: u16`"));
         }
     }
 

@@ -12,13 +12,14 @@ pub async fn serve_stream(
     mut line: Served,
     mut stream: impl AsyncRead + AsyncWrite + Unpin,
 ) -> io::Result<()> {
-    let link = line.bus.open(line.framing);
+    let link = line.bus.open(line.framing());
     let mut buffer = [0; 1024];
     loop {
         while let Some(send) = line.next_send() {
             match send {
                 Send::Frame(_, frame) => stream.write_all(&frame).await?,
                 Send::Close(_) => return Ok(()),
+                Send::Move(_) => {}
             }
         }
         tokio::select! {

@@ -28,6 +28,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
                 Send::Close(link) => {
                     clients.by_link.get(&link).into_iter().for_each(|id| listener.close(*id));
                 }
+                Send::Move(_) => {}
             }
         }
         let event = tokio::select! {
@@ -45,7 +46,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             None => line.bus.advance_to(line.clock.now()),
             Some(TcpEvent::Opened(id, from)) => {
                 info!("{}: {from} connected", line.name);
-                clients.insert(id, line.bus.open(line.framing));
+                clients.insert(id, line.bus.open(line.framing()));
             }
             Some(TcpEvent::Bytes(id, bytes)) => {
                 let link = clients.by_client.get(&id).copied();

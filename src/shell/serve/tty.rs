@@ -1,22 +1,28 @@
 //! Serves a line on a terminal: a pseudo-terminal of ours, or a serial port that may go and come back.
 
 use super::{Send, Served};
-use crate::line::Settings;
+use crate::serial::Settings;
 use crate::shell::clock::Clock;
 use crate::shell::port::Tty;
 use crate::time::Duration;
 use std::io;
 use tracing::{info, warn};
 
-/// Opens the port again after it was lost.
-pub type Reopen = Box<dyn Fn() -> io::Result<Tty>>;
+/// Opens the port again after it was lost, with the line's present settings.
+pub type Reopen = Box<dyn Fn(Settings) -> io::Result<Tty>>;
+
+/// How long an answer may take to leave a port before it moves: 256 characters at 2400 baud.
+const FLUSH: Duration = Duration::from_millis(1200);
+
+/// How often it is looked whether it has left.
+const FLUSH_STEP: Duration = Duration::from_millis(1);
 
 /// How often a lost port is looked for.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 
 /// Serves `line` on `tty` for ever.
-pub async fn serve_tty(mut line: Served, mut tty: Tty, settings: Settings, reopen: Reopen) {
-    let mut watch = Watch { settings, told: None, deaf: false };
+pub async fn serve_tty(mut line: Served, mut tty: Tty, reopen: Reopen) {
+    let mut watch = Watch::default();
     loop {
         let lost = serve_until_lost(&mut line, &mut tty, &mut watch).await;
         warn!("{}: the port is gone ({lost}); waiting for it to come back", line.name);
@@ -26,10 +32,10 @@ pub async fn serve_tty(mut line: Served, mut tty: Tty, settings: Settings, reope
 }
 
 async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Error {
-    let link = line.bus.open(line.framing);
+    let link = line.bus.open(line.framing());
     let mut buffer = [0; 1024];
     let error = loop {
-        if let Err(error) = send_all(line, tty, watch) {
+        if let Err(error) = send_all(line, tty, watch).await {
             break error;
         }
         let read = tokio::select! {
@@ -57,23 +63,45 @@ async fn wait_for(line: &mut Served, reopen: &Reopen) -> Tty {
         Clock::wall(LOOK_AGAIN).await;
         line.bus.advance_to(line.clock.now());
         while line.next_send().is_some() {}
-        if let Ok(tty) = reopen() {
+        if let Ok(tty) = reopen(line.settings()) {
             return tty;
         }
     }
 }
 
-fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Result<()> {
-    while let Some(Send::Frame(_, frame)) = line.next_send() {
-        let taken = tty.write_now(&frame)?;
-        watch.sent(line, taken, frame.len());
+async fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Result<()> {
+    while let Some(send) = line.next_send() {
+        match send {
+            Send::Frame(_, frame) => {
+                let taken = tty.write_now(&frame)?;
+                watch.sent(line, taken, frame.len());
+            }
+            Send::Move(mode) => retune(tty, mode.settings).await?,
+            // Only a TCP stream can be lost.
+            Send::Close(_) => {}
+        }
     }
     Ok(())
 }
 
+/// Moves the port to other settings, once the answer in the old ones has left.
+async fn retune(tty: &mut Tty, Settings { baud, format }: Settings) -> io::Result<()> {
+    match tty {
+        Tty::Pty(pty) => pty.preset(baud, format.stop_bits),
+        Tty::Serial(serial) => {
+            let mut patience = FLUSH;
+            while serial.unsent()? > 0 && !patience.is_zero() {
+                Clock::wall(FLUSH_STEP).await;
+                patience = patience.saturating_sub(FLUSH_STEP);
+            }
+            serial.retune(baud, format.data_bits, format.parity.letter(), format.stop_bits)
+        }
+    }
+}
+
 /// What can be seen of the program at the other end.
+#[derive(Default)]
 struct Watch {
-    settings: Settings,
     /// Settings of the other end that were told already.
     told: Option<(u32, u8)>,
     /// The other end has stopped reading.
@@ -90,12 +118,13 @@ impl Watch {
         }
         self.told = Some(theirs);
         let (baud, stop_bits) = theirs;
-        let Settings { baud: ours, format } = self.settings;
+        let settings = line.settings();
+        let Settings { baud: ours, format } = settings;
         if baud != ours || stop_bits != format.stop_bits {
             warn!(
                 "{}: the master has set {baud} baud and {stop_bits} stop bit(s), the line is {}; \
                  a pseudo-terminal does not care, a wire would",
-                line.name, self.settings
+                line.name, settings
             );
         }
     }

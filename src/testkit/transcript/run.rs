@@ -20,7 +20,7 @@ pub fn run(text: &str, library: &dyn Library) -> Result<(), Failure> {
     let script = Script::parse(text)?;
     let line = line(&script, library)?;
     let mut player =
-        Player { ascii: line.wire.ascii, rig: Rig::line(line), pending: None, told: 0 };
+        Player { ascii: line.wire.mode.ascii, rig: Rig::line(line), pending: None, told: 0 };
     for (number, step) in &script.steps {
         let played = player.settle(step).and_then(|()| player.play(*number, step));
         played.map_err(|what| player.failure(*number, what))?;
@@ -36,7 +36,7 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
     }
     let wire = WireSpec::of(&devices, script.settings, script.ascii, script.strict);
     for (device, drive) in devices.iter_mut().zip(&script.drives) {
-        let matched = match_line(device, wire.settings, wire.ascii);
+        let matched = match_line(device, wire.mode);
         matched.map_err(|what| Failure { line: drive.line, what })?;
     }
     Ok(BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices })

@@ -1,7 +1,7 @@
 //! The text of a transcript, line by line, as steps.
 
 use super::Failure;
-use crate::line::Settings;
+use crate::serial::Settings;
 use crate::testkit::hex;
 use crate::time::{Duration, parse_duration};
 use std::collections::BTreeMap;

@@ -13,6 +13,15 @@ pub struct Settings {
     pub format: Format,
 }
 
+/// How a serial line talks: its transmission mode (serial line, 2.5), speed and format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mode {
+    /// ASCII instead of RTU.
+    pub ascii: bool,
+    /// Speed and format.
+    pub settings: Settings,
+}
+
 /// The shape of a character: `8N1`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Format {
@@ -84,6 +93,13 @@ impl fmt::Display for Format {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}-{}", self.baud, self.format)
+    }
+}
+
+impl fmt::Display for Mode {
+    /// `9600-8N2 RTU`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.settings, if self.ascii { "ASCII" } else { "RTU" })
     }
 }
 

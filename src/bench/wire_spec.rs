@@ -1,0 +1,62 @@
+//! How a line is set, and what that means for telling frames apart.
+
+use super::Device;
+use crate::drive::Drive;
+use crate::line::Framing;
+use crate::serial::{Mode, Settings};
+use crate::time::{Duration, Instant};
+
+/// How a line is set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WireSpec {
+    /// Transmission mode, speed and character format.
+    pub mode: Mode,
+    /// RTU frames end by silence only.
+    pub strict: bool,
+    /// Characters of silence that end a frame.
+    pub silence: f64,
+}
+
+/// Silence that a patient line waits for at least: schedulers and USB adapters stretch a pause inside a
+/// frame to 3-16 ms.
+pub const PATIENT_GAP: Duration = Duration::from_millis(20);
+
+/// Longest pause inside an ASCII frame (serial line, 2.5.2.1).
+const ASCII_GAP: Duration = Duration::from_secs(1);
+
+impl WireSpec {
+    /// How a line with `devices` is set: as told, else as the first drive's own parameters say.
+    pub fn of(
+        devices: &[Device],
+        settings: Option<Settings>,
+        ascii: Option<bool>,
+        strict: bool,
+    ) -> Self {
+        let first = devices.first();
+        let own = first.and_then(|device| {
+            Drive::new(device.model.clone(), device.setups.first()?, Instant::ZERO).mode()
+        });
+        let own = own.unwrap_or(Mode { ascii: false, settings: Settings::STANDARD });
+        Self {
+            mode: Mode {
+                ascii: ascii.unwrap_or(own.ascii),
+                settings: settings.unwrap_or(own.settings),
+            },
+            strict,
+            silence: first.map_or(3.5, |device| device.model.line.silence),
+        }
+    }
+
+    /// The framing of a serial line at `rate` emulated seconds per wall second: a patient gap is a
+    /// fact of the wall, so it grows with the rate.
+    pub fn framing(&self, rate: f64) -> Framing {
+        if self.mode.ascii {
+            return Framing::Ascii { gap: ASCII_GAP.mul_f64(rate) };
+        }
+        let silence = self.mode.settings.silence(self.silence);
+        match self.strict {
+            true => Framing::Rtu { gap: silence, patient: false },
+            false => Framing::Rtu { gap: silence.max(PATIENT_GAP).mul_f64(rate), patient: true },
+        }
+    }
+}
