@@ -259,6 +259,8 @@ impl Drive {
             }
             Action::RestoreFactory => {
                 self.bank.restore_factory(&self.model, self.station);
+                // Input words are 0 then, so there is nothing left to fall back.
+                self.holds.iter_mut().for_each(Hold::stop);
                 self.changes.push_back(Change::FactoryRestored);
                 self.gather_inputs();
                 self.follow_line_settings();

@@ -38,7 +38,8 @@ fn what(what: &What, bus: &Bus) -> String {
         }
         What::Foreign { unit, pdu, answer } => {
             let kind = if *answer { "answer of" } else { "request to" };
-            let here = if *answer { String::new() } else { format!("; {}", who_is_here(*unit, bus)) };
+            let here =
+                if *answer { String::new() } else { format!("; {}", who_is_here(*unit, bus)) };
             format!("foreign {kind} unit {unit}: {}: silence{here}", to_hex(pdu))
         }
         What::BadCrc { frame, crc, answered } => {

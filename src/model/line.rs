@@ -237,7 +237,10 @@ fn coded<T>(
     let of = |value: i64| digit.map_or(value, |digit| value >> (4 * digit) & 0xF);
     let holds = |code: i64| match digit {
         None => row.admits(code),
-        Some(_) => (0..=0xFFFF).any(|value| row.admits(value) && of(value) == code),
+        Some(_) => {
+            let words = |(low, high): &(i64, i64)| (*low.max(&0))..=(*high.min(&0xFFFF));
+            row.spans.iter().flat_map(words).any(|value| of(value) == code)
+        }
     };
     for code in codes.keys().filter(|code| !holds(**code)) {
         let what = format!("{} never holds {code}", row.id);

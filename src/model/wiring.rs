@@ -1,6 +1,7 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
 mod compile;
+mod names;
 mod used;
 
 pub(super) use compile::compile;

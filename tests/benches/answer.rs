@@ -39,7 +39,10 @@ fn in_process() {
     let crc = median(200_000, || {
         black_box(crc16(black_box(&request)));
     });
-    println!("in process   answer {answer:6.0} ns   crc of the request {crc:6.1} ns   ratio {:.1}", answer / crc);
+    println!(
+        "in process   answer {answer:6.0} ns   crc of the request {crc:6.1} ns   ratio {:.1}",
+        answer / crc
+    );
 }
 
 /// Median of the nanoseconds that one call takes, over 21 rounds.
@@ -74,7 +77,10 @@ mod pseudo_terminal {
         }
         [&mut echoes, &mut answers].into_iter().for_each(|it| it.sort_by(f64::total_cmp));
         let (echo, answer) = (echoes[20], answers[20]);
-        println!("pty          answer {answer:6.1} us   bare echo {echo:6.1} us   ratio {:.2}", answer / echo);
+        println!(
+            "pty          answer {answer:6.1} us   bare echo {echo:6.1} us   ratio {:.2}",
+            answer / echo
+        );
     }
 
     struct Client {
@@ -111,7 +117,7 @@ mod pseudo_terminal {
     }
 
     fn serve_drive() -> PathBuf {
-        use drivemu::line::Settings;
+        use drivemu::serial::Settings;
         use drivemu::shell::port::Tty;
         use drivemu::shell::{Clock, Served, serve_tty};
         serve(|pty| async move {
@@ -122,7 +128,13 @@ mod pseudo_terminal {
             let framing = Framing::Rtu { gap: Duration::from_millis(20), patient: true };
             let clock = Clock::start(1.0);
             let line = Served { name: "line".into(), bus, clock, framing, log: None };
-            serve_tty(line, Tty::Pty(pty), Settings::STANDARD, Box::new(|| Ok(Tty::Pty(Pty::open(None)?)))).await;
+            serve_tty(
+                line,
+                Tty::Pty(pty),
+                Settings::STANDARD,
+                Box::new(|| Ok(Tty::Pty(Pty::open(None)?))),
+            )
+            .await;
         })
     }
 

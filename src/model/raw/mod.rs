@@ -163,7 +163,6 @@ pub const KEYS: &[&str] = &[
     "code",
     "codes",
     "commands",
-    "count",
     "crc_error",
     "default",
     "digit",

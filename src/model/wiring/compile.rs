@@ -1,18 +1,18 @@
 //! Resolves the wiring of a file: names to rows, words to roles.
 
 use super::{
-    Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shown, Shows,
-    Terminals, Wiring,
+    Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals,
+    Wiring,
 };
+use crate::model::RowId;
 use crate::model::raw::{
     RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
 };
 use crate::model::rows::Compiled;
-use crate::model::{Access, RowId};
-use crate::problem::{At, Path, Problem, suggest};
-use crate::time::{Duration, parse_duration};
+use crate::problem::{At, Path, Problem};
+use crate::time::Duration;
 use crate::units::{Dimension, Unit};
-use crate::words::{Action, AlarmCause, Input, Output, Quantity, Word};
+use crate::words::{Action, AlarmCause, Input, Quantity, Word};
 use std::collections::BTreeMap;
 
 pub(in crate::model) fn compile(
@@ -38,10 +38,10 @@ pub(in crate::model) fn compile(
 }
 
 /// What everything below needs: rows to find, a place for problems, the result.
-struct Wirer<'a> {
-    rows: &'a Compiled,
-    problems: &'a mut Vec<Problem>,
-    wiring: Wiring,
+pub(super) struct Wirer<'a> {
+    pub(super) rows: &'a Compiled,
+    pub(super) problems: &'a mut Vec<Problem>,
+    pub(super) wiring: Wiring,
 }
 
 impl Wirer<'_> {
@@ -272,185 +272,5 @@ impl Wirer<'_> {
             self.problems
                 .push(Problem::key(path, what).advise("add `forced: {code: N}` to `alarms`"));
         }
-    }
-
-    // ------------------------------------------------------------------ words and rows by name
-
-    fn word<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
-        let found = W::parse(name);
-        if found.is_none() {
-            let all = W::ALL.iter().map(|word| word.name());
-            let advice = suggest::did_you_mean(name, all.clone())
-                .unwrap_or_else(|| format!("known: {}", all.collect::<Vec<_>>().join(", ")));
-            let what = format!("no {kind} `{name}`");
-            self.problems.push(Problem::value(path.clone(), what).advise(advice));
-        }
-        found
-    }
-
-    /// The word named by the key that ends `path`.
-    fn word_key<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
-        let before = self.problems.len();
-        let word = self.word(name, kind, path);
-        self.problems[before..].iter_mut().for_each(|problem| problem.at = At::Key);
-        word
-    }
-
-    fn shown(&mut self, text: &str, path: &Path) -> Option<Shown> {
-        let (name, inverted) = match text.strip_prefix("not ") {
-            Some(name) => (name.trim_start(), true),
-            None => (text, false),
-        };
-        let signal = self.word::<Output>(name, "output signal", path)?;
-        Some(Shown { signal, inverted })
-    }
-
-    fn codes<S>(
-        &mut self,
-        raw: &BTreeMap<u16, String>,
-        path: &Path,
-        parse: fn(&mut Self, &str, &Path) -> Option<S>,
-    ) -> Vec<(u16, S)> {
-        let entry = |(code, name): (&u16, &String)| {
-            parse(self, name, &path.key(code)).map(|signal| (*code, signal))
-        };
-        raw.iter().filter_map(entry).collect()
-    }
-
-    fn codes_used(&mut self, codes: &BTreeMap<u16, String>, used: bool, path: &Path) {
-        if !used && !codes.is_empty() {
-            let what = "`codes` changes nothing without `terminals` or `words`";
-            self.problems.push(Problem::key(path.key("codes"), what).advise("leave it out"));
-        }
-    }
-
-    fn row(&mut self, id: &str, path: &Path) -> Option<RowId> {
-        self.rows.find(id, path, self.problems)
-    }
-
-    /// The row named by the key that ends `path`.
-    fn row_key(&mut self, id: &str, path: &Path) -> Option<RowId> {
-        let before = self.problems.len();
-        let row = self.rows.find(id, path, self.problems);
-        self.problems[before..].iter_mut().for_each(|problem| problem.at = At::Key);
-        row
-    }
-
-    fn row_list(&mut self, ids: &[String], path: &Path) -> Vec<RowId> {
-        let row = |(i, id): (usize, &String)| self.row(id, &path.index(i));
-        ids.iter().enumerate().filter_map(row).collect()
-    }
-
-    fn enable_words(&mut self, ids: &[String], words: usize, path: &Path) -> Vec<RowId> {
-        let path = path.key("enabled_by");
-        if !ids.is_empty() && ids.len() != words {
-            let what = format!("{} enable words for {words} words", ids.len());
-            self.problems.push(Problem::value(path.clone(), what).advise("one each, or none"));
-        }
-        self.row_list(ids, &path)
-    }
-
-    fn positions<S: Copy>(
-        &mut self,
-        codes: &[(u16, S)],
-        moved: &BTreeMap<u16, u16>,
-        words: usize,
-        by_terminals: bool,
-        path: &Path,
-    ) -> Vec<(u16, S)> {
-        for code in moved.keys().filter(|code| !codes.iter().any(|(it, _)| it == *code)) {
-            let what = format!("function number {code} has no signal in `codes`");
-            self.problems.push(Problem::key(path.key("positions").key(code), what));
-        }
-        let mut positions: Vec<(u16, S)> = Vec::new();
-        for (code, signal) in codes {
-            let position = moved.get(code).copied().unwrap_or(*code);
-            if by_terminals && !moved.contains_key(code) && usize::from(position) >= 16 * words {
-                // Out of reach of the words, but a terminal can have it.
-                continue;
-            }
-            let what = if usize::from(position) >= 16 * words {
-                format!("no word has position {position}, the last is {}", 16 * words - 1)
-            } else if positions.iter().any(|(taken, _)| *taken == position) {
-                format!("position {position} carries another signal already")
-            } else {
-                positions.push((position, *signal));
-                continue;
-            };
-            let problem = match moved.contains_key(code) {
-                true => Problem::value(path.key("positions").key(code), what),
-                false => {
-                    let path = path.parent().unwrap_or_default().key("codes").key(code);
-                    Problem::key(path, what).advise("give it a bit of its own in `words.positions`")
-                }
-            };
-            self.problems.push(problem);
-        }
-        positions
-    }
-
-    // ------------------------------------------------------------------ what a row is used for
-
-    fn show(&mut self, row: RowId, shows: Shows, path: &Path, at: At) {
-        let shown = self.rows.map.row(row);
-        if shown.access != Access::Read {
-            let what =
-                format!("{} shows what the drive computes, so it can't be written", shown.id);
-            let problem = Problem { at, ..Problem::value(path.clone(), what) };
-            self.problems.push(problem.advise("give it `access: r`"));
-        }
-        let slot = &mut self.wiring.shows[usize::from(row.0)];
-        if slot.is_some() {
-            let what = format!("{} shows something else already", shown.id);
-            self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
-            return;
-        }
-        *slot = Some(shows);
-    }
-
-    fn react(&mut self, row: RowId, reaction: Reaction, path: &Path, at: At) {
-        let slot = &mut self.wiring.reactions[usize::from(row.0)];
-        if *slot != Reaction::None && *slot != reaction {
-            let what = format!("{} is wired to something else already", self.rows.map.row(row).id);
-            self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
-            return;
-        }
-        *slot = reaction;
-    }
-
-    fn writable(&mut self, row: RowId, path: &Path, at: At) {
-        let row = self.rows.map.row(row);
-        if row.access == Access::Read {
-            let what = format!("{} is read only, so no master can set it", row.id);
-            let problem = Problem { at, ..Problem::value(path.clone(), what) };
-            self.problems.push(problem.advise("give it `access: rw`"));
-        }
-    }
-
-    fn one_word(&mut self, row: RowId, path: &Path) {
-        let row = self.rows.map.row(row);
-        if row.kind.words() != 1 {
-            let what = format!("{} has two words, and each of these has 16 bits", row.id);
-            self.problems.push(Problem::value(path.clone(), what).advise("give it `type: u16`"));
-        }
-    }
-
-    fn bit(&mut self, bit: u8, row: RowId, path: &Path) {
-        let row = self.rows.map.row(row);
-        if u16::from(bit) >= 16 * row.kind.words() {
-            let what = format!("{} has no bit {bit}", row.id);
-            self.problems.push(Problem::key(path.clone(), what));
-        }
-    }
-
-    fn duration(&mut self, text: Option<&str>, path: &Path) -> Option<Duration> {
-        let text = text?;
-        let duration = parse_duration(text);
-        if duration.is_none() {
-            let what = format!("`{text}` is no time");
-            let advice = "write a number and us, ms, s or min: 500ms";
-            self.problems.push(Problem::value(path.clone(), what).advise(advice));
-        }
-        duration
     }
 }

@@ -1,0 +1,18 @@
+//! The integration tests in one binary, one subject a module.
+
+mod documents;
+mod expect;
+mod frames;
+mod kit;
+mod ladder;
+mod line;
+mod problems;
+mod properties;
+#[cfg(feature = "cli")]
+mod schema;
+#[cfg(feature = "cli")]
+mod shell;
+mod source;
+mod tidy;
+mod transcripts;
+mod words;

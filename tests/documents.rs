@@ -1,0 +1,125 @@
+//! Documents that must not lie: generated ones are up to date, and examples in others work.
+//!
+//! `UPDATE_DOCS=1 cargo test` writes the generated ones anew.
+
+use crate::expect::{read, root, same};
+use crate::kit::Files;
+use drivemu::model;
+use drivemu::problem::render::render;
+use drivemu::testkit::transcript;
+use drivemu::units::{Dimension, Unit};
+use drivemu::words::{Action, AlarmCause, Cause, Input, Output, Quantity, Word};
+use serde_yaml::Value;
+use std::fmt::Write as _;
+
+#[test]
+fn the_catalogue_of_roles_is_up_to_date() {
+    let checked = same(&root("docs/roles.md"), &roles(), "UPDATE_DOCS");
+    checked.unwrap_or_else(|what| panic!("{what}"));
+}
+
+/// docs/roles.md, from the tables in src/words.
+fn roles() -> String {
+    let mut out = String::from(
+        "<!-- Generated from src/words by `UPDATE_DOCS=1 cargo test`; edit there, not here. -->\n\n\
+         # Roles\n\n\
+         The words that a model may use, and all that they mean. How to use them: [models.md](models.md).\n",
+    );
+    let inputs = "Signals into the drive: `signals.inputs` wires them to terminals, words and bits. \
+                  A signal is active while any of its sources is.";
+    section::<Input>(&mut out, "Input signals", inputs);
+    let outputs = "Signals out of the drive: `signals.outputs` wires them. `not` and a signal shows \
+                   its opposite.";
+    section::<Output>(&mut out, "Output signals", outputs);
+    let actions = "What writing a value to a row of `signals.inputs.commands` sets off, at once and \
+                   with every write.";
+    section::<Action>(&mut out, "Actions", actions);
+    let quantities = "Numbers that the drive computes: `quantities` says which row shows each.";
+    section::<Quantity>(&mut out, "Quantities", quantities);
+    out.push_str("\nThe row's unit must fit, with any factor before it (`0.1 rpm`, `100 ms`):\n\n");
+    for quantity in Quantity::ALL {
+        let symbols: Vec<_> = match quantity.dimension() {
+            Dimension::None => vec!["no unit".to_owned()],
+            dimension => Unit::symbols_of(dimension).map(|it| format!("`{it}`")).collect(),
+        };
+        writeln!(out, "- `{}`: {}", quantity.name(), symbols.join(" or ")).expect("a string");
+    }
+    let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
+    writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");
+    let alarms =
+        "Why a drive trips: `alarms` gives each its number. What has no number is never raised.";
+    section::<AlarmCause>(&mut out, "Alarm causes", alarms);
+    let causes = "Why a drive refuses a request: `line.refuse` puts them in order, each with its \
+                  exception code. Of all that hold, the first in the list answers.";
+    section::<Cause>(&mut out, "Causes of refusal", causes);
+    out
+}
+
+fn section<W: Word>(out: &mut String, title: &str, about: &str) {
+    write!(out, "\n## {title}\n\n{about}\n\n| name | meaning |\n| --- | --- |\n")
+        .expect("a string");
+    for word in W::ALL {
+        writeln!(out, "| `{}` | {} |", word.name(), word.about().replace('|', "\\|"))
+            .expect("a string");
+    }
+}
+
+/// Every YAML on the page about models: a whole model, a part of acme-s1, or something that goes with it.
+#[test]
+fn the_examples_of_models_are_true() {
+    let page = read(&root("docs/models.md"));
+    let file = read(&root("tests/models/acme-s1.yaml"));
+    let acme: Value = serde_yaml::from_str(&file).expect("YAML");
+    let snippets = fenced(&page, "yaml");
+    assert!(snippets.len() > 10, "{}", snippets.len());
+    for snippet in snippets {
+        let part: Value =
+            serde_yaml::from_str(&snippet).unwrap_or_else(|e| panic!("{e}\n{snippet}"));
+        let text = match part.as_mapping().and_then(|part| part.keys().next()) {
+            _ if part.get("format").is_some() => snippet.clone(),
+            Some(key) if acme.get(key).is_none() => format!("{file}\n{snippet}"),
+            _ => {
+                assert!(is_part(&part, &acme), "not what acme-s1.yaml says:\n{snippet}");
+                continue;
+            }
+        };
+        let problems = render(&model::check(&text), "models.md", &text);
+        assert!(problems.is_empty(), "{problems}");
+    }
+    let (bad, good) = (
+        fenced(&page, "text"),
+        fenced(&page, "yaml")[0].replace("register: C002", "register: C0O2"),
+    );
+    assert_eq!(render(&model::check(&good), "acme-s0.yaml", &good), bad[0]);
+    transcript::run(&bad[1], &Files).unwrap_or_else(|failure| panic!("{failure}"));
+}
+
+/// Does `whole` say everything that `part` says?
+fn is_part(part: &Value, whole: &Value) -> bool {
+    match (part, whole) {
+        (Value::Mapping(part), Value::Mapping(whole)) => {
+            part.iter().all(|(key, part)| whole.get(key).is_some_and(|whole| is_part(part, whole)))
+        }
+        _ => part == whole,
+    }
+}
+
+/// The blocks of a page that are fenced as `kind`.
+fn fenced(page: &str, kind: &str) -> Vec<String> {
+    let open = format!("```{kind}\n");
+    page.split(&open)
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap_or_default().into())
+        .collect()
+}
+
+/// The conversation in the head of testkit::transcript goes as it says.
+#[test]
+fn the_example_of_a_transcript_plays() {
+    let head = read(&root("src/testkit/transcript.rs"));
+    let lines = head.lines().map_while(|line| line.strip_prefix("//!")).map(str::trim_start);
+    let example =
+        lines.skip_while(|line| *line != "```text").skip(1).take_while(|line| *line != "```");
+    let example = example.collect::<Vec<_>>().join("\n");
+    transcript::run(&example, &Files).unwrap_or_else(|failure| panic!("{failure}\n{example}"));
+}

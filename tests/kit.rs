@@ -1,0 +1,180 @@
+//! What several tests share: transcript files and how they are played, and lines with drives on them.
+
+use crate::expect::{files, read, root};
+use drivemu::bench::{
+    BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, WireSpec, parse,
+};
+use drivemu::bus::Output;
+use drivemu::event::{Event, What};
+use drivemu::model::builtin::Builtin;
+use drivemu::model::{Choices, Model, load};
+use drivemu::testkit::{Rig, transcript};
+use drivemu::words::Refusal;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A file with a conversation.
+pub struct Conversation {
+    /// Where it lies, from the package's root.
+    pub path: String,
+    /// The text, for each model that it must hold for.
+    pub texts: Vec<String>,
+}
+
+impl Conversation {
+    /// Every `.txt` file below `folder`, by path.
+    pub fn all(folder: &str) -> Vec<Self> {
+        let paths = files(folder, "txt");
+        assert!(!paths.is_empty(), "no transcript in {folder}");
+        paths.iter().map(|path| Self::read(path)).collect()
+    }
+
+    fn read(path: &Path) -> Self {
+        let text = read(path);
+        let path = path.strip_prefix(root("")).expect("below the root").display().to_string();
+        let mut texts = vec![text.clone()];
+        for line in text.lines() {
+            if let Some(models) = line.strip_prefix("# also: ") {
+                texts.extend(models.split_whitespace().map(|model| with_model(&text, model)));
+            }
+        }
+        Self { path, texts }
+    }
+
+    /// Plays it with every model; the message says where and what.
+    pub fn play(&self) -> Result<(), String> {
+        self.texts.iter().try_for_each(|text| self.play_text(text))
+    }
+
+    /// Plays `text`, which is a variation of this conversation.
+    pub fn play_text(&self, text: &str) -> Result<(), String> {
+        transcript::run(text, &Files).map_err(|failure| {
+            let model = text.lines().find(|line| line.starts_with("model ")).unwrap_or_default();
+            format!("{}:{}: ({model}) {}", self.path, failure.line, failure.what)
+        })
+    }
+}
+
+/// Plays all of them and tells of all that fail.
+pub fn play_all(conversations: &[Conversation]) {
+    let failures: Vec<_> = conversations.iter().filter_map(|it| it.play().err()).collect();
+    assert!(failures.is_empty(), "{} failed\n\n{}", failures.len(), failures.join("\n\n"));
+}
+
+/// The same conversation with another model: lines keep their numbers.
+fn with_model(text: &str, model: &str) -> String {
+    let mut swapped = String::new();
+    for line in text.lines() {
+        let rest = line.strip_prefix("model ").map(|rest| rest.split_once(' '));
+        match rest {
+            Some(Some((_, rest))) => writeln!(swapped, "model {model} {rest}"),
+            Some(None) => writeln!(swapped, "model {model}"),
+            None => writeln!(swapped, "{line}"),
+        }
+        .expect("a string takes everything");
+    }
+    swapped
+}
+
+/// The embedded models, and those of `tests/models`, by file name.
+pub struct Files;
+
+impl Library for Files {
+    fn fetch(&self, name: &str) -> Result<(String, String), String> {
+        if !name.ends_with(".yaml") {
+            return BuiltinLibrary.fetch(name);
+        }
+        Ok((name.to_owned(), read(&root("tests/models").join(name))))
+    }
+}
+
+/// The names of the embedded models.
+pub const MODELS: [&str; 4] = ["hcfa-x", "k-series", "yako-closed-loop", "yako-open-loop"];
+
+/// A line with one drive of an embedded model, its options chosen.
+pub fn rig(model: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Rig {
+    rig_of(text_of(model), options, spec)
+}
+
+/// The text of an embedded model.
+pub fn text_of(model: &str) -> &'static str {
+    Builtin::all().find(|it| it.stem() == model).expect("an embedded model").text
+}
+
+/// A line with one drive of the model in `text`.
+pub fn rig_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Rig {
+    Rig::line(line_of(text, options, spec))
+}
+
+/// The same, not switched on.
+pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> BenchLine {
+    let device = Device::new(model(text, options), spec);
+    let device = device.unwrap_or_else(|problems| panic!("{}", problems[0].what));
+    let devices = vec![device];
+    let wire = WireSpec::of(&devices, None, None, false);
+    BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices }
+}
+
+/// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
+fn model(text: &str, options: &[(&str, &str)]) -> Arc<Model> {
+    type Compiled = BTreeMap<(String, Choices), Arc<Model>>;
+    static COMPILED: Mutex<Compiled> = Mutex::new(Compiled::new());
+    let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
+    let compile = |(text, choices): &(String, Choices)| {
+        let model = load(text, choices);
+        Arc::new(model.unwrap_or_else(|problems| panic!("{}", problems[0])))
+    };
+    let own = |(name, choice): &(&str, &str)| ((*name).to_owned(), (*choice).to_owned());
+    let entry = compiled.entry((text.to_owned(), options.iter().map(own).collect()));
+    entry.or_insert_with_key(compile).clone()
+}
+
+/// The first line of a bench, for as many drives as a test wants to switch on anew.
+pub fn bench_line(text: &str) -> BenchLine {
+    let bench = parse(text, &BuiltinLibrary).unwrap_or_else(|problems| panic!("{}", problems[0]));
+    bench.lines.into_iter().next().expect("a line")
+}
+
+/// The same line again.
+pub fn again(line: &BenchLine) -> BenchLine {
+    let BenchLine { name, port, wire, devices } = line;
+    BenchLine { name: name.clone(), port: port.clone(), wire: *wire, devices: devices.clone() }
+}
+
+/// The refusal of the last transaction, if it was one.
+pub fn last_refusal(rig: &Rig) -> Option<Refusal> {
+    match rig.events().iter().rev().find_map(transaction) {
+        Some(refusal) => refusal,
+        None => panic!("no transaction in\n{}", rig.log()),
+    }
+}
+
+fn transaction(event: &Event) -> Option<Option<Refusal>> {
+    match &event.what {
+        What::Transaction(it) => Some(it.refusal),
+        _ => None,
+    }
+}
+
+/// Everything that a bus has to give away: bytes sent, events, and whether it closed the link.
+#[derive(Debug, Default)]
+pub struct Drained {
+    pub sent: Vec<u8>,
+    pub events: Vec<Event>,
+    pub closed: bool,
+}
+
+/// Takes all of it.
+pub fn drain(bus: &mut drivemu::bus::Bus) -> Drained {
+    let mut drained = Drained::default();
+    while let Some(output) = bus.poll_output() {
+        match output {
+            Output::Transmit { frame, .. } => drained.sent.extend_from_slice(&frame),
+            Output::Event(event) => drained.events.push(event),
+            other => drained.closed |= matches!(other, Output::Close(_)),
+        }
+    }
+    drained
+}

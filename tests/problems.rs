@@ -1,0 +1,120 @@
+//! Bad files and what people are told about them, caret for caret: one small file a rule.
+//!
+//! `UPDATE_EXPECT=1 cargo test` writes the expectations anew; read them as somebody who made the mistake.
+
+use crate::expect::{files, read, root, same};
+use crate::source::Source;
+use drivemu::bench::{self, BuiltinLibrary, Library};
+use drivemu::model;
+use drivemu::problem::render::render;
+use std::path::Path;
+
+/// The embedded models, and the bad ones of this test by file name.
+struct BadModels;
+
+impl Library for BadModels {
+    fn fetch(&self, name: &str) -> Result<(String, String), String> {
+        let file = root("tests/problems/model").join(name);
+        match name.ends_with(".yaml") && file.exists() {
+            true => Ok((name.to_owned(), read(&file))),
+            false => BuiltinLibrary.fetch(name),
+        }
+    }
+}
+
+fn told(file: &Path) -> String {
+    let text = read(file);
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let problems = match file.parent().and_then(Path::file_name) {
+        Some(kind) if kind == "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
+        _ => model::check(&text),
+    };
+    render(&problems, &name, &text)
+}
+
+#[test]
+fn each_bad_file_is_told_as_expected() {
+    let check = |file: &Path| same(&file.with_extension("txt"), &told(file), "UPDATE_EXPECT");
+    let bad: Vec<_> =
+        files("tests/problems", "yaml").iter().filter_map(|it| check(it).err()).collect();
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
+
+#[test]
+fn good_models_have_no_problem() {
+    for file in ["models", "tests/models"].iter().flat_map(|folder| files(folder, "yaml")) {
+        assert_eq!(told(&file), "");
+    }
+}
+
+#[test]
+fn each_expectation_has_its_bad_file() {
+    let mut orphans = files("tests/problems", "txt");
+    orphans.retain(|file| !file.with_extension("yaml").exists());
+    assert!(orphans.is_empty(), "{orphans:?}");
+}
+
+/// Where sentences for people who write files come from.
+const SPEAKERS: [&str; 5] = [
+    "src/model/",
+    "src/bench/",
+    "src/serial.rs",
+    "src/problem/place/refuse.rs",
+    "src/problem/section.rs",
+];
+
+/// Every rule has a bad file: each sentence in the source stands in some expectation.
+#[test]
+fn each_sentence_is_heard() {
+    let told: Vec<String> = files("tests/problems", "txt").iter().map(|file| read(file)).collect();
+    let mut unheard = Vec::new();
+    for source in Source::all("src") {
+        if !SPEAKERS.iter().any(|speaker| source.path.starts_with(speaker)) {
+            continue;
+        }
+        for (line, text) in source.texts_of_program().filter(|(_, text)| is_sentence(text)) {
+            let pieces = pieces(text);
+            if !told.iter().flat_map(|told| told.lines()).any(|line| says(line, &pieces)) {
+                unheard.push(format!("{}:{line}: {text}", source.path));
+            }
+        }
+    }
+    assert!(unheard.is_empty(), "no file in tests/problems brings up\n{}", unheard.join("\n"));
+}
+
+fn is_sentence(text: &str) -> bool {
+    let words = text.split(' ').filter(|word| word.chars().any(char::is_lowercase));
+    words.count() >= 2 && !text.contains("BTreeMap<")
+}
+
+/// What a format string says around its values.
+fn pieces(text: &str) -> Vec<String> {
+    let text = text.replace("{{", "\u{1}").replace("}}", "\u{2}");
+    let mut pieces = vec![String::new()];
+    let mut inside = false;
+    for c in text.chars() {
+        match c {
+            '{' => {
+                inside = true;
+                pieces.push(String::new());
+            }
+            '}' => inside = false,
+            _ if inside => {}
+            '\u{1}' => pieces.last_mut().expect("one").push('{'),
+            '\u{2}' => pieces.last_mut().expect("one").push('}'),
+            _ => pieces.last_mut().expect("one").push(c),
+        }
+    }
+    pieces
+}
+
+fn says(line: &str, pieces: &[String]) -> bool {
+    let mut rest = line;
+    pieces.iter().all(|piece| match rest.split_once(piece.as_str()) {
+        Some((_, after)) => {
+            rest = after;
+            true
+        }
+        None => false,
+    })
+}

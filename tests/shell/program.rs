@@ -1,0 +1,157 @@
+//! Starts the program as a user does and stops it again, whatever happens to the test.
+
+use serde_json::Value;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// How long anything may take before a test gives up. Machines are small and noisy.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A running `drivemu run`.
+pub struct Program {
+    child: Child,
+    /// Everything that this run writes lies in here.
+    pub folder: TempDir,
+    ready: Value,
+}
+
+impl Program {
+    /// Starts `drivemu run` with `args` and waits until every port is open.
+    pub fn run(args: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let ready_file = folder.path().join("ready.json");
+        let mut child = drivemu()
+            .current_dir(folder.path())
+            .arg("run")
+            .args(args)
+            .args(["--ready-file", "ready.json"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        wait_for("the ready file", || {
+            assert!(child.try_wait().expect("asked").is_none(), "ended: {}", rest(&mut child));
+            ready_file.exists()
+        });
+        let ready = std::fs::read_to_string(&ready_file).expect("the ready file");
+        let ready = serde_json::from_str(&ready).expect("JSON, whole");
+        Self { child, folder, ready }
+    }
+
+    /// The ready file.
+    pub fn ready(&self) -> &Value {
+        &self.ready
+    }
+
+    /// Path of the first endpoint.
+    pub fn path(&self) -> String {
+        self.ready["endpoints"][0]["path"].as_str().expect("a path").to_owned()
+    }
+
+    /// Address of the first endpoint.
+    pub fn addr(&self) -> std::net::SocketAddr {
+        let addr = self.ready["endpoints"][0]["addr"].as_str().expect("an address");
+        addr.parse().expect("host and port")
+    }
+
+    /// Ends the run with `signal` and gives back how it ended and what it printed.
+    pub fn stop(mut self, signal: &str) -> (Option<i32>, String, String) {
+        let pid = self.child.id().to_string();
+        let killed = Command::new("kill").args([&format!("-{signal}"), &pid]).status();
+        assert!(killed.expect("kill runs").success());
+        wait_for("the end", || self.child.try_wait().expect("asked").is_some());
+        let code = self.child.wait().expect("ended").code();
+        let (stdout, stderr) = printed(&mut self.child);
+        (code, stdout, stderr)
+    }
+
+    /// Waits until stderr has said `text`. Reads it in a thread of its own from then on.
+    pub fn wait_until_said(&mut self, said: &Said, text: &str) {
+        let running = &mut self.child;
+        wait_for(&format!("`{text}`"), || {
+            assert!(running.try_wait().expect("asked").is_none(), "ended: {}", said.all());
+            said.all().contains(text)
+        });
+    }
+
+    /// Listens to stderr from now on.
+    pub fn listen(&mut self) -> Said {
+        let mut stderr = self.child.stderr.take().expect("stderr");
+        let said = Said::default();
+        let into = said.0.clone();
+        std::thread::spawn(move || {
+            let mut buffer = [0; 1024];
+            while let Ok(len @ 1..) = stderr.read(&mut buffer) {
+                let text = String::from_utf8_lossy(&buffer[..len]).into_owned();
+                into.lock().expect("not poisoned").push_str(&text);
+            }
+        });
+        said
+    }
+}
+
+/// What a run said on stderr so far.
+#[derive(Default, Clone)]
+pub struct Said(std::sync::Arc<std::sync::Mutex<String>>);
+
+impl Said {
+    /// All of it.
+    pub fn all(&self) -> String {
+        self.0.lock().expect("not poisoned").clone()
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Runs the program to its end.
+pub fn once(folder: &Path, args: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } =
+        drivemu().current_dir(folder).args(args).output().expect("the program starts");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    (status.code(), text(stdout), text(stderr))
+}
+
+/// A file in `folder`.
+pub fn file(folder: &TempDir, name: &str, text: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).expect("written");
+    path
+}
+
+/// Waits for something that another process does.
+#[allow(clippy::disallowed_methods)] // Another process can only be waited for on the wall.
+pub fn wait_for(what: &str, mut done: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !done() {
+        assert!(start.elapsed() < PATIENCE, "waited too long for {what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn drivemu() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_drivemu"))
+}
+
+fn printed(child: &mut Child) -> (String, String) {
+    let (mut stdout, mut stderr) = (String::new(), String::new());
+    if let Some(pipe) = &mut child.stdout {
+        pipe.read_to_string(&mut stdout).expect("text");
+    }
+    if let Some(pipe) = &mut child.stderr {
+        pipe.read_to_string(&mut stderr).expect("text");
+    }
+    (stdout, stderr)
+}
+
+fn rest(child: &mut Child) -> String {
+    printed(child).1
+}

@@ -1,0 +1,244 @@
+//! Every word of the catalogue, driven through a made-up drive that wires them all: tests/models/acme-s1.yaml.
+//!
+//! The `match`es have no `_` arm on purpose: a new word does not compile until it is tested here.
+
+use crate::kit::rig_of;
+use drivemu::bench::DeviceSpec;
+use drivemu::bus::Command;
+use drivemu::event::{Change, DriveId, What};
+use drivemu::model::{RowId, Shows, Wiring};
+use drivemu::testkit::{Rig, to_hex};
+use drivemu::words::{Action, AlarmCause, Input, Output, Quantity, Word};
+use std::time::Duration;
+
+const ACME: &str = include_str!("models/acme-s1.yaml");
+const FIRST: DriveId = DriveId(0);
+
+/// Where an input signal can come from.
+const SOURCES: [fn(&mut Rig, Input, bool); 3] = [by_terminal, by_word, by_bit];
+
+#[test]
+fn each_input_acts_from_each_source() {
+    for &input in Input::ALL {
+        for (i, source) in SOURCES.iter().enumerate() {
+            let mut rig = acme(&DeviceSpec::default());
+            let place = format!("`{}` from source {i}\n", input.name());
+            match input {
+                Input::ServoOn => {
+                    source(&mut rig, input, true);
+                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                    source(&mut rig, input, false);
+                    assert!(!rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                }
+                Input::AlarmReset => {
+                    raise(&mut rig, AlarmCause::Overload);
+                    source(&mut rig, input, true);
+                    assert!(!rig.drive().output(Output::Alarm), "{place}{}", rig.log());
+                    raise(&mut rig, AlarmCause::Overload);
+                    source(&mut rig, input, false);
+                    assert!(rig.drive().output(Output::Alarm), "an edge, no level: {place}");
+                }
+                Input::AlarmForce => {
+                    source(&mut rig, input, true);
+                    assert_eq!(rig.drive().quantity(Quantity::AlarmCode), 0x99, "{place}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn each_output_shows_both_ways() {
+    for &output in Output::ALL {
+        let mut rig = acme(&DeviceSpec::default());
+        let mut seen = vec![shown(&rig, output)];
+        match output {
+            // What has no supply does not answer, so nobody can see it off.
+            Output::Powered => {
+                assert!(seen[0]);
+                continue;
+            }
+            Output::Ready | Output::Alarm => raise(&mut rig, AlarmCause::Overload),
+            Output::Enabled | Output::BrakeOpen => give(&mut rig, Action::Enable),
+        }
+        seen.push(shown(&rig, output));
+        assert!(seen[0] != seen[1], "`{}` is always {}", output.name(), seen[0]);
+    }
+}
+
+#[test]
+fn each_quantity_shows() {
+    let switches = Some(9);
+    let spec = DeviceSpec { switches, position: -70_000, ..DeviceSpec::default() };
+    for &quantity in Quantity::ALL {
+        let mut rig = acme(&spec);
+        let want = match quantity {
+            Quantity::PositionActual => -70_000,
+            Quantity::AlarmCode => {
+                raise(&mut rig, AlarmCause::Overload);
+                0x41
+            }
+            Quantity::UnitInUse | Quantity::UnitSwitches => 9,
+        };
+        let row = row_showing(&rig, &Shows::Quantity(quantity));
+        let value = rig.drive().model().map.row(row).kind.value(rig.drive().show(row));
+        assert_eq!((value, rig.drive().quantity(quantity)), (want, want), "`{}`", quantity.name());
+    }
+}
+
+#[test]
+fn each_action_acts() {
+    for &action in Action::ALL {
+        let mut rig = acme(&DeviceSpec { position: 5, ..DeviceSpec::default() });
+        match action {
+            Action::Release => give(&mut rig, Action::Enable),
+            Action::AlarmReset => raise(&mut rig, AlarmCause::Overload),
+            Action::Enable
+            | Action::ClearPosition
+            | Action::StoreAll
+            | Action::RestoreFactory
+            | Action::PowerCycle => {}
+        }
+        give(&mut rig, action);
+        let want = match action {
+            Action::Enable => Change::Enabled(true),
+            Action::Release => Change::Enabled(false),
+            Action::AlarmReset => Change::AlarmCleared,
+            Action::ClearPosition => Change::PositionCleared,
+            Action::StoreAll => Change::Stored,
+            Action::RestoreFactory => Change::FactoryRestored,
+            Action::PowerCycle => Change::PoweredOn,
+        };
+        let last = rig.events().last().map(|event| event.what);
+        let told = matches!(last, Some(What::Drive { change, .. }) if change == want);
+        assert!(told, "`{}`\n{}", action.name(), rig.log());
+    }
+}
+
+#[test]
+fn each_alarm_has_its_number() {
+    let mut numbers = Vec::new();
+    for &cause in AlarmCause::ALL {
+        let mut rig = acme(&DeviceSpec::default());
+        raise(&mut rig, cause);
+        assert!(rig.drive().output(Output::Alarm) && !rig.drive().output(Output::Ready));
+        numbers.push(rig.drive().quantity(Quantity::AlarmCode));
+    }
+    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x99]);
+}
+
+fn acme(spec: &DeviceSpec) -> Rig {
+    rig_of(ACME, &[], spec)
+}
+
+fn wiring(rig: &Rig) -> &Wiring {
+    &rig.drive().model().wiring
+}
+
+fn raise(rig: &mut Rig, cause: AlarmCause) {
+    rig.command(Command::Raise { drive: FIRST, cause }).expect("an alarm of the model");
+}
+
+/// Writes one word, and lets the drive start anew if that is what it does.
+fn write(rig: &mut Rig, row: RowId, value: u16) {
+    let at = rig.drive().model().map.row(row).at.to_be_bytes();
+    let request = [&[rig.drive().unit(), 0x06][..], &at, &value.to_be_bytes()].concat();
+    let answer = rig.ask(&to_hex(&request));
+    assert_eq!(answer, to_hex(&request), "{}", rig.log());
+}
+
+fn set_bit(rig: &mut Rig, row: RowId, bit: u16, on: bool) {
+    let present = rig.drive().bank().raw(row) as u16;
+    write(rig, row, present & !(1 << bit) | u16::from(on) << bit);
+}
+
+/// Gives the command that stands for `action`.
+fn give(rig: &mut Rig, action: Action) {
+    let of_row = |it: &drivemu::model::Commands| {
+        let value = it.actions.iter().find(|(_, it)| *it == action)?.0;
+        Some((it.row, u16::try_from(value).expect("one word")))
+    };
+    let (row, value) = wiring(rig).commands.iter().find_map(of_row).expect("every action is wired");
+    write(rig, row, value);
+}
+
+fn by_terminal(rig: &mut Rig, input: Input, on: bool) {
+    let terminals = wiring(rig).input_terminals.as_ref().expect("it has terminals");
+    let code =
+        terminals.codes.iter().find(|(_, it)| *it == input).expect("every input has a number").0;
+    let row = terminals.functions[2];
+    write(rig, row, code);
+    rig.command(Command::Terminal { drive: FIRST, index: 2, signal: on }).expect("a terminal");
+}
+
+fn by_word(rig: &mut Rig, input: Input, on: bool) {
+    let words = wiring(rig).input_words.as_ref().expect("it has words");
+    let position = words.positions.iter().find(|(_, it)| *it == input).expect("a position").0;
+    let (word, bit) = (usize::from(position / 16), position % 16);
+    let (row, enable) = (words.rows[word], words.enabled_by[word]);
+    set_bit(rig, enable, bit, true);
+    set_bit(rig, row, bit, on);
+}
+
+fn by_bit(rig: &mut Rig, input: Input, on: bool) {
+    let of_row = |(row, bits): &(RowId, Vec<(u8, Input)>)| {
+        bits.iter().find(|(_, it)| *it == input).map(|(bit, _)| (*row, u16::from(*bit)))
+    };
+    let (row, bit) = wiring(rig).input_bits.iter().find_map(of_row).expect("every input has a bit");
+    set_bit(rig, row, bit, on);
+}
+
+/// What `output` is, after all places that show it said the same: bits, words and a terminal.
+fn shown(rig: &Rig, output: Output) -> bool {
+    let mut places = vec![rig.drive().output(output)];
+    let model = rig.drive().model();
+    for (row, _) in model.map.rows() {
+        if let Some(Shows::Bits(bits)) = wiring(rig).shows(row) {
+            let of_output = bits.iter().filter(|(_, it)| it.signal == output);
+            let shown = rig.drive().show(row);
+            places.extend(of_output.map(|(bit, it)| (shown >> bit & 1 != 0) != it.inverted));
+        }
+    }
+    let words = wiring(rig).output_words.as_ref().expect("it has words");
+    for (position, it) in words.positions.iter().filter(|(_, it)| it.signal == output) {
+        let (word, bit) = ((position / 16) as usize, position % 16);
+        let enabled = rig.drive().bank().raw(words.enabled_by[word]) >> bit & 1 != 0;
+        let shown = rig.drive().show(row_showing(rig, &Shows::OutputWord(word as u8)));
+        let bit = shown >> bit & 1 != 0;
+        places.push(if enabled { bit != it.inverted } else { places[0] });
+        assert!(enabled || !bit, "a bit shows that is not enabled");
+    }
+    assert!(places.len() >= 3, "`{}` shows in too few places", output.name());
+    assert!(places.iter().all(|it| *it == places[0]), "`{}`: {places:?}", output.name());
+    places[0]
+}
+
+fn row_showing(rig: &Rig, want: &Shows) -> RowId {
+    let model = rig.drive().model();
+    let row = model.map.rows().find(|(row, _)| model.wiring.shows(*row) == Some(want));
+    row.expect("every word is wired").0
+}
+
+/// Factory values put the input words back, so no hold of theirs is left to end.
+#[test]
+fn factory_values_end_the_holds() {
+    let mut rig = acme(&DeviceSpec::default());
+    by_word(&mut rig, Input::ServoOn, true);
+    give(&mut rig, Action::RestoreFactory);
+    assert!(!rig.drive().output(Output::Enabled), "{}", rig.log());
+    rig.advance(Duration::from_secs(60));
+    assert!(!rig.log().contains("not refreshed"), "{}", rig.log());
+}
+
+/// The drive starts within the time that it says, and no sooner.
+#[test]
+fn it_is_ready_when_it_says() {
+    let mut rig = acme(&DeviceSpec::default());
+    give(&mut rig, Action::PowerCycle);
+    let mut ready = Vec::new();
+    for ms in [299, 1] {
+        rig.advance(Duration::from_millis(ms));
+        ready.push(rig.drive().output(Output::Ready));
+    }
+    assert_eq!(ready, [false, true]);
+}
