@@ -200,8 +200,11 @@ enum Happening {
 /// Happenings with their times in milliseconds, in order.
 fn happenings() -> impl Strategy<Value = Vec<(u64, Happening)>> {
     let drive = DriveId(0);
-    let terminal =
-        (0..9u8, any::<bool>()).prop_map(move |(index, signal)| Command::Terminal { drive, index, signal });
+    let terminal = (0..9u8, any::<bool>()).prop_map(move |(index, signal)| Command::Terminal {
+        drive,
+        index,
+        signal,
+    });
     let word = (0x3607..=0x360Au16, 0..8u16).prop_map(|(at, value)| request(1, at, value));
     let hold = (0..4u16).prop_map(|value| request(1, 0x090B, value));
     let enable = (0x0905..=0x0908u16, any::<u16>()).prop_map(|(at, value)| request(1, at, value));
@@ -264,9 +267,21 @@ fn the_slices_have_something_to_cut() {
     ];
     happenings.push((8_000, Happening::Do(Command::PowerCycle { drive: DriveId(0) })));
     let (events, _) = live(&happenings, &[]);
-    let at = |ms| events.iter().filter(|it| it.at == Instant::from_millis(ms)).map(|it| it.what).collect::<Vec<_>>();
+    let at = |ms| {
+        events
+            .iter()
+            .filter(|it| it.at == Instant::from_millis(ms))
+            .map(|it| it.what)
+            .collect::<Vec<_>>()
+    };
     assert!(matches!(at(23)[..], [What::BadCrc { .. }]), "silence ends a frame");
-    assert!(matches!(at(1000)[..], [What::Drive { .. }, What::Drive { .. }]), "ready, and so servo on");
-    assert!(matches!(at(5002)[..], [What::Drive { .. }, What::Drive { .. }]), "word gone, and so servo off");
+    assert!(
+        matches!(at(1000)[..], [What::Drive { .. }, What::Drive { .. }]),
+        "ready, and so servo on"
+    );
+    assert!(
+        matches!(at(5002)[..], [What::Drive { .. }, What::Drive { .. }]),
+        "word gone, and so servo off"
+    );
     assert!(matches!(at(9000)[..], [What::Drive { .. }]), "ready again");
 }

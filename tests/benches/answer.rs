@@ -117,24 +117,19 @@ mod pseudo_terminal {
     }
 
     fn serve_drive() -> PathBuf {
-        use drivemu::serial::Settings;
+        use drivemu::bench::{Device, WireSpec};
         use drivemu::shell::port::Tty;
-        use drivemu::shell::{Clock, Served, serve_tty};
+        use drivemu::shell::{Clock, Frames, Served, serve_tty};
         serve(|pty| async move {
             let model = Builtin::find(Builtin::default_name()).expect("the default model");
             let model = model.load(&Default::default()).expect("a valid model");
+            let device = Device::new(model.into(), &Default::default()).expect("no wishes");
             let mut bus = Bus::new();
-            bus.add(model.into(), &Default::default(), 0);
-            let framing = Framing::Rtu { gap: Duration::from_millis(20), patient: true };
-            let clock = Clock::start(1.0);
-            let line = Served { name: "line".into(), bus, clock, framing, log: None };
-            serve_tty(
-                line,
-                Tty::Pty(pty),
-                Settings::STANDARD,
-                Box::new(|| Ok(Tty::Pty(Pty::open(None)?))),
-            )
-            .await;
+            bus.add(device.model.clone(), &device.setups[0], 0);
+            let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
+            let (clock, frames) = (Clock::start(1.0), Frames::Serial(wire));
+            let line = Served { name: "line".into(), bus, clock, frames, log: None };
+            serve_tty(line, Tty::Pty(pty), Box::new(|_| Ok(Tty::Pty(Pty::open(None)?)))).await;
         })
     }
 

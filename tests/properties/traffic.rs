@@ -36,7 +36,8 @@ pub fn bytes(len: Range<usize>) -> impl Strategy<Value = Vec<u8>> {
 pub fn pieces(len: Range<usize>) -> impl Strategy<Value = Vec<Piece>> {
     let micros = prop_oneof![Just(0u64), 0..30_000u64];
     let piece = (piece(), micros);
-    let piece = piece.prop_map(|(bytes, micros)| Piece { bytes, pause: Duration::from_micros(micros) });
+    let piece =
+        piece.prop_map(|(bytes, micros)| Piece { bytes, pause: Duration::from_micros(micros) });
     vec(piece, len)
 }
 
@@ -45,11 +46,12 @@ fn piece() -> impl Strategy<Value = Vec<u8>> {
         frame.truncate(at.index(frame.len()) + 1);
         frame
     });
-    let broken = (frame(), any::<prop::sample::Index>(), 0..8u8).prop_map(|(mut frame, at, bit)| {
-        let at = at.index(frame.len());
-        frame[at] ^= 1 << bit;
-        frame
-    });
+    let broken =
+        (frame(), any::<prop::sample::Index>(), 0..8u8).prop_map(|(mut frame, at, bit)| {
+            let at = at.index(frame.len());
+            frame[at] ^= 1 << bit;
+            frame
+        });
     prop_oneof![4 => frame(), 2 => cut, 2 => broken, 2 => bytes(1..40), 1 => bytes(200..700)]
 }
 

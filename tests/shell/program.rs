@@ -13,8 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A running `drivemu run`.
 pub struct Program {
     child: Child,
-    /// Everything that this run writes lies in here.
-    pub folder: TempDir,
+    /// Everything that this run writes lies in here, and goes with it.
+    _folder: TempDir,
     ready: Value,
 }
 
@@ -38,7 +38,7 @@ impl Program {
         });
         let ready = std::fs::read_to_string(&ready_file).expect("the ready file");
         let ready = serde_json::from_str(&ready).expect("JSON, whole");
-        Self { child, folder, ready }
+        Self { child, _folder: folder, ready }
     }
 
     /// The ready file.
