@@ -4,7 +4,7 @@
 
 use crate::expect::{files, read, root, same};
 use crate::source::Source;
-use drivemu::bench::{self, BuiltinLibrary, Library};
+use drivemu::bench::{self, BuiltinLibrary, Library, kind_of};
 use drivemu::model;
 use drivemu::problem::render::render;
 use std::path::Path;
@@ -38,6 +38,20 @@ fn each_bad_file_is_told_as_expected() {
     let bad: Vec<_> =
         files("tests/problems", "yaml").iter().filter_map(|it| check(it).err()).collect();
     assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
+
+/// Nobody says which kind of file it is: it is told by its keys, or what is told is the same either way.
+#[test]
+fn the_kind_of_a_file_shows() {
+    for file in files("tests/problems", "yaml") {
+        let text = read(&file);
+        let by_kind = match kind_of(&text) {
+            "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
+            _ => model::check(&text),
+        };
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        assert_eq!(render(&by_kind, &name, &text), told(&file), "{}", file.display());
+    }
 }
 
 #[test]

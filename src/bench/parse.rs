@@ -16,17 +16,18 @@ use std::sync::Arc;
 
 /// What a YAML file is, judged by its keys.
 pub fn kind_of(text: &str) -> &'static str {
-    match serde_yaml::from_str::<Value>(text) {
-        Ok(file) if file.get("lines").is_some() => "bench",
-        _ => "model",
-    }
+    let file: Value = serde_yaml::from_str(text).unwrap_or_default();
+    let of_bench = ["lines", "seed"].iter().any(|key| file.get(key).is_some());
+    // Of a model this is a map; somebody forgot the s.
+    let nearly = file.get("line").is_some_and(Value::is_sequence);
+    if of_bench || nearly { "bench" } else { "model" }
 }
 
 /// Reads a bench.
 ///
 /// # Errors
-/// Every problem of the file. A problem inside a model file is told by its number of problems only; check
-/// that file itself.
+/// Every problem of the file. Of what is wrong inside a model file only the first is told; check that
+/// file itself.
 pub fn parse(text: &str, library: &dyn Library) -> Result<Bench, Vec<Problem>> {
     let (file, problems) = section::tree(text)?;
     if !problems.is_empty() {

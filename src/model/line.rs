@@ -141,7 +141,10 @@ pub(super) fn compile(
     let path = Path::root().key("line");
     if raw.functions.is_empty() {
         let what = "a drive without functions answers nothing";
-        problems.push(Problem::value(path.key("functions"), what).advise("0x03, 0x06 and 0x10"));
+        problems.push(
+            Problem::value(path.key("functions"), what)
+                .advise("list those of 0x03, 0x06 and 0x10 that it knows"),
+        );
     }
     for (i, function) in raw.functions.iter().enumerate() {
         if ![READ, WRITE_ONE, WRITE_MANY].contains(function) {

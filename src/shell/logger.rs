@@ -6,11 +6,14 @@
 use crate::bus::Bus;
 use crate::event::Event;
 use crate::log::{json, text};
+use crate::time::Duration;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::thread::JoinHandle;
+
+/// How long the end of a run waits for a slow reader to take the last lines.
+const LAST_LINES: Duration = Duration::from_secs(1);
 
 /// Lines that may wait for a slow reader.
 const QUEUE: usize = 65_536;
@@ -33,7 +36,8 @@ pub struct Logger {
     to_file: bool,
     queue: Option<SyncSender<Entry>>,
     dropped: u64,
-    writer: Option<JoinHandle<()>>,
+    /// Ends when the writer has written everything.
+    written: Receiver<()>,
 }
 
 struct Entry {
@@ -50,11 +54,12 @@ impl Logger {
         let file = file.map(File::create).transpose()?;
         let (queue, entries) = sync_channel(QUEUE);
         let to_file = file.is_some();
-        let writer = std::thread::Builder::new()
-            .name("log".into())
-            .spawn(move || write(&entries, file.map(BufWriter::new)))?;
-        let (queue, writer) = (Some(queue), Some(writer));
-        Ok(Self { format, names, to_file, queue, dropped: 0, writer })
+        let (writing, written) = sync_channel(0);
+        std::thread::Builder::new().name("log".into()).spawn(move || {
+            write(&entries, file.map(BufWriter::new));
+            drop(writing);
+        })?;
+        Ok(Self { format, names, to_file, queue: Some(queue), dropped: 0, written })
     }
 
     /// Logs an event of the line called `name`.
@@ -101,14 +106,11 @@ impl Logger {
 }
 
 impl Drop for Logger {
-    /// Writes what is left. A reader that stopped reading would hold the end up, so if the queue is full
-    /// nobody waits for it.
+    /// Writes what is left. A reader that stopped reading must not hold up the end of the run for long.
     fn drop(&mut self) {
-        let stuck = self.dropped > 0;
         self.queue = None;
-        if let Some(writer) = self.writer.take().filter(|_| !stuck) {
-            let _ = writer.join();
-        }
+        // Nothing is ever sent: this waits for the writer to end.
+        let _ = self.written.recv_timeout(LAST_LINES);
     }
 }
 

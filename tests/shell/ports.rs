@@ -88,6 +88,8 @@ fn a_log_that_nobody_reads_stops_nobody() {
     for _ in 0..3_000 {
         assert_eq!(ask(&mut port), hex(ANSWER).expect("hex"));
     }
+    let (code, ..) = program.stop("TERM");
+    assert_eq!(code, Some(0));
 }
 
 /// A cable whose other end is at `device`: the master of a pseudo-terminal, linked there.

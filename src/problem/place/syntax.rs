@@ -77,7 +77,7 @@ mod tests {
             ("a: 1\nb\nc: 2", 3, 1, "a key without `:`"),
             ("  a: 1\n b: 2", 2, 2, "text behind the end of the document"),
             ("a: ]", 1, 4, "a bracket that closes nothing"),
-            ("a: [1\n  b: c\n  d: e", 3, 4, "a `:` where no key can end"),
+            ("a: [1\n  b: c\n  d: e", 2, 4, "a `:` where no key can end"),
             ("%YAML 1.2 x\n", 1, 1, "not YAML: while scanning a directive"),
         ] {
             let (places, problems) = Places::parse(text);
