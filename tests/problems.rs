@@ -7,7 +7,8 @@ use crate::source::Source;
 use drivemu::bench::{self, BuiltinLibrary, Library, kind_of};
 use drivemu::model;
 use drivemu::problem::render::render;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// The embedded models, and the bad ones of this test by file name.
 struct BadModels;
@@ -22,6 +23,12 @@ impl Library for BadModels {
     }
 }
 
+/// Each bad file with what is told about it.
+static TOLD: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {
+    let files = files("tests/problems", "yaml").into_iter();
+    files.map(|file| (file.clone(), told(&file))).collect()
+});
+
 fn told(file: &Path) -> String {
     let text = read(file);
     let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -34,23 +41,24 @@ fn told(file: &Path) -> String {
 
 #[test]
 fn each_bad_file_is_told_as_expected() {
-    let check = |file: &Path| same(&file.with_extension("txt"), &told(file), "UPDATE_EXPECT");
-    let bad: Vec<_> =
-        files("tests/problems", "yaml").iter().filter_map(|it| check(it).err()).collect();
+    let check = |(file, told): &(PathBuf, String)| {
+        same(&file.with_extension("txt"), told, "UPDATE_EXPECT").err()
+    };
+    let bad: Vec<_> = TOLD.iter().filter_map(check).collect();
     assert!(bad.is_empty(), "{}", bad.join("\n"));
 }
 
 /// Nobody says which kind of file it is: it is told by its keys, or what is told is the same either way.
 #[test]
 fn the_kind_of_a_file_shows() {
-    for file in files("tests/problems", "yaml") {
-        let text = read(&file);
+    for (file, told) in TOLD.iter() {
+        let text = read(file);
         let by_kind = match kind_of(&text) {
             "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
             _ => model::check(&text),
         };
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        assert_eq!(render(&by_kind, &name, &text), told(&file), "{}", file.display());
+        assert_eq!(render(&by_kind, &name, &text), *told, "{}", file.display());
     }
 }
 
@@ -80,7 +88,6 @@ const SPEAKERS: [&str; 5] = [
 /// Every rule has a bad file: each sentence in the source stands in some expectation.
 #[test]
 fn each_sentence_is_heard() {
-    let told: Vec<String> = files("tests/problems", "txt").iter().map(|file| read(file)).collect();
     let mut unheard = Vec::new();
     for source in Source::all("src") {
         if !SPEAKERS.iter().any(|speaker| source.path.starts_with(speaker)) {
@@ -88,7 +95,7 @@ fn each_sentence_is_heard() {
         }
         for (line, text) in source.texts_of_program().filter(|(_, text)| is_sentence(text)) {
             let pieces = pieces(text);
-            if !told.iter().flat_map(|told| told.lines()).any(|line| says(line, &pieces)) {
+            if !TOLD.iter().flat_map(|(_, told)| told.lines()).any(|line| says(line, &pieces)) {
                 unheard.push(format!("{}:{line}: {text}", source.path));
             }
         }
