@@ -88,6 +88,11 @@ impl Library for Files {
         }
         Ok((name.to_owned(), read(&root("tests/models").join(name))))
     }
+
+    fn model(&self, name: &str, choices: &Choices) -> Result<Arc<Model>, String> {
+        let (file, text) = self.fetch(name)?;
+        compiled(&text, choices).map_err(|what| format!("{file}: {what}"))
+    }
 }
 
 /// The names of the embedded models.
@@ -110,7 +115,10 @@ pub fn rig_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Rig {
 
 /// The same, not switched on.
 pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> BenchLine {
-    let device = Device::new(model(text, options), spec);
+    let own = |(name, choice): &(&str, &str)| ((*name).to_owned(), (*choice).to_owned());
+    let choices = options.iter().map(own).collect();
+    let model = compiled(text, &choices).unwrap_or_else(|problem| panic!("{problem}"));
+    let device = Device::new(model, spec);
     let device = device.unwrap_or_else(|problems| panic!("{}", problems[0].what));
     let devices = vec![device];
     let wire = WireSpec::of(&devices, None, None, false);
@@ -118,17 +126,17 @@ pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Bench
 }
 
 /// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
-fn model(text: &str, options: &[(&str, &str)]) -> Arc<Model> {
+fn compiled(text: &str, choices: &Choices) -> Result<Arc<Model>, String> {
     type Compiled = BTreeMap<(String, Choices), Arc<Model>>;
     static COMPILED: Mutex<Compiled> = Mutex::new(Compiled::new());
-    let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
-    let compile = |(text, choices): &(String, Choices)| {
-        let model = load(text, choices);
-        Arc::new(model.unwrap_or_else(|problems| panic!("{}", problems[0])))
-    };
-    let own = |(name, choice): &(&str, &str)| ((*name).to_owned(), (*choice).to_owned());
-    let entry = compiled.entry((text.to_owned(), options.iter().map(own).collect()));
-    entry.or_insert_with_key(compile).clone()
+    let key = (text.to_owned(), choices.clone());
+    let known = || COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(model) = known().get(&key) {
+        return Ok(model.clone());
+    }
+    let model = Arc::new(load(text, choices).map_err(|problems| problems[0].to_string())?);
+    known().insert(key, model.clone());
+    Ok(model)
 }
 
 /// The first line of a bench, for as many drives as a test wants to switch on anew.

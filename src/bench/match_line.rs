@@ -22,6 +22,9 @@ pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
             format!("{}{}", if it.ascii { "ASCII " } else { "" }, it.format)
         };
         let known: Vec<_> = line.format.codes.values().map(text).collect();
+        if ascii && !line.format.codes.values().any(|it| it.ascii) {
+            return format!("{} can't do ASCII; it talks RTU only", model.name);
+        }
         let kind = if ascii { "ASCII" } else { "RTU" };
         let (name, format) = (&model.name, settings.format);
         format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))

@@ -16,6 +16,8 @@ pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;
 use crate::model::builtin::Builtin;
+use crate::model::{Choices, Model, load};
+use std::sync::Arc;
 
 /// Where model files come from.
 pub trait Library {
@@ -24,6 +26,17 @@ pub trait Library {
     /// # Errors
     /// One sentence that says why there is none and what to do.
     fn fetch(&self, name: &str) -> Result<(String, String), String>;
+
+    /// The model called `name` with `choices`, compiled. A library that is asked for the same one often
+    /// can keep it.
+    ///
+    /// # Errors
+    /// As [`fetch`](Self::fetch), or the first problem of the file.
+    fn model(&self, name: &str, choices: &Choices) -> Result<Arc<Model>, String> {
+        let (file, text) = self.fetch(name)?;
+        let model = load(&text, choices);
+        model.map(Arc::new).map_err(|problems| format!("{file}: {}", problems[0]))
+    }
 }
 
 /// The embedded models and no files.

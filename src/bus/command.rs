@@ -64,8 +64,6 @@ impl Bus {
             | Command::Raise { drive, .. }
             | Command::PowerCycle { drive } => drive,
         };
-        let now = self.now;
-        let device = self.devices.get(usize::from(id.0)).copied();
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
         match command {
             Command::Terminal { index, signal, .. } => {
@@ -82,9 +80,8 @@ impl Bus {
                 }
             }
             Command::PowerCycle { .. } => {
-                let stations = self.drives.iter_mut().zip(&self.devices);
-                let of_device = stations.filter(|(_, it)| Some(**it) == device);
-                of_device.for_each(|(drive, _)| drive.power_cycle(now));
+                let device = self.devices[usize::from(id.0)];
+                self.power_cycle(device);
             }
         }
         Ok(Reply::Done)

@@ -120,6 +120,11 @@ impl Bus {
         self.by_unit[usize::from(unit)]
     }
 
+    /// How the line talks, if it is a serial one.
+    pub fn mode(&self) -> Option<Mode> {
+        self.mode
+    }
+
     /// The time up to which everything has happened.
     pub fn now(&self) -> Instant {
         self.now
@@ -184,6 +189,9 @@ impl Bus {
 
     /// Collects what a drive has to tell and when it wants to be woken.
     fn after_drive(&mut self, id: DriveId) {
+        if self.drives[usize::from(id.0)].take_restart() {
+            self.power_cycle(self.devices[usize::from(id.0)]);
+        }
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
             moved |=
@@ -196,6 +204,16 @@ impl Bus {
             self.readdress();
         }
         self.agenda.set(id, self.drives[usize::from(id.0)].deadline());
+    }
+
+    /// Power off and on for all stations of `device`.
+    fn power_cycle(&mut self, device: u16) {
+        for i in 0..self.drives.len() {
+            if self.devices[i] == device {
+                self.drives[i].power_cycle(self.now);
+                self.after_drive(DriveId(i as u16));
+            }
+        }
     }
 
     /// Where all drives of a serial line agree on another mode, the line goes with them: a lone drive takes

@@ -21,7 +21,7 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
         return Err(Failure::invalid("--rate takes a number above 0, up to 1000000"));
     }
     let (bench, base) = bench(&args)?;
-    let seed = args.seed.or(bench.seed).unwrap_or_else(rand::random);
+    let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
     let options = RunOptions {
         seed,
         rate: args.rate,
@@ -37,8 +37,15 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
     runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
         OpenError::Port(_) => Failure { code: NO_PORT, text: error.to_string() },
-        OpenError::File(..) => Failure { code: FAILED, text: error.to_string() },
+        OpenError::File(..) | OpenError::Signals(_) => {
+            Failure { code: FAILED, text: error.to_string() }
+        }
     })
+}
+
+/// A seed that survives JSON: no more bits than a double has.
+fn draw_seed() -> u64 {
+    rand::random::<u64>() >> 11
 }
 
 /// The bench to run, and what its paths are relative to.

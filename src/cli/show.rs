@@ -40,7 +40,8 @@ fn find(model: &Model, name: &str) -> Result<RowId, Failure> {
 }
 
 fn table(model: &Model, rows: &[RowId]) -> String {
-    let head = ["address", "row", "type", "access", "range", "init", "unit", "name", "moves"];
+    let head =
+        ["address", "row", "type", "access", "range", "init", "unit", "name", "moves", "assumed"];
     let mut lines = vec![head.map(str::to_owned)];
     for id in rows {
         let row = model.map.row(*id);
@@ -54,6 +55,7 @@ fn table(model: &Model, rows: &[RowId]) -> String {
             row.unit_text.clone(),
             row.name.clone(),
             wired(model, *id).unwrap_or_else(|| "-".into()),
+            if row.assumed.is_empty() { String::new() } else { "yes".into() },
         ]);
     }
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max();
@@ -69,8 +71,8 @@ fn table(model: &Model, rows: &[RowId]) -> String {
 
 fn markdown(model: &Model, rows: &[RowId]) -> String {
     let mut out = String::from(
-        "| address | row | name | 中文 | type | access | range | init | unit | applies | section | wired to |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| address | row | name | 中文 | type | access | range | init | unit | applies | section | wired to | assumed |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for id in rows {
         let row = model.map.row(*id);
@@ -87,6 +89,7 @@ fn markdown(model: &Model, rows: &[RowId]) -> String {
             applies(row.applies).into(),
             row.see.clone(),
             wired(model, *id).unwrap_or_default(),
+            row.assumed.clone(),
         ];
         out.push_str(&format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | ")));
     }

@@ -1,7 +1,7 @@
 //! One station of a drive: the only place that sees registers and behaviours.
 //!
 //! A request becomes a plan, the plan is committed, and what the written rows are wired to reacts
-//! ([`react`]). What a row shows is computed when somebody looks ([`show`]). It knows no bytes on a line and no
+//! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
 mod react;
@@ -41,6 +41,8 @@ pub struct Drive {
     mode: Option<Mode>,
     position: i64,
     changes: VecDeque<Change>,
+    /// A master has asked for a restart of the whole device, which only the bus knows.
+    restart: bool,
     read: [u16; 125],
 }
 
@@ -63,6 +65,7 @@ impl Drive {
             mode: None,
             position: setup.position,
             changes: VecDeque::with_capacity(8),
+            restart: false,
             read: [0; 125],
         };
         drive.power_on(now);
@@ -138,6 +141,11 @@ impl Drive {
     pub fn power_cycle(&mut self, now: Instant) {
         self.bank.power_cycle();
         self.power_on(now);
+    }
+
+    /// Has a master asked for a restart of the device since this was asked last?
+    pub fn take_restart(&mut self) -> bool {
+        std::mem::take(&mut self.restart)
     }
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
@@ -243,7 +251,7 @@ impl Drive {
         Some(Mode { ascii, settings: Settings { baud, format } })
     }
 
-    fn act(&mut self, now: Instant, action: Action) {
+    fn act(&mut self, action: Action) {
         let tell = &mut |change| self.changes.push_back(change);
         match action {
             Action::Enable => self.servo.latch(true, tell),
@@ -265,7 +273,7 @@ impl Drive {
                 self.gather_inputs();
                 self.follow_line_settings();
             }
-            Action::PowerCycle => self.power_cycle(now),
+            Action::PowerCycle => self.restart = true,
         }
     }
 }

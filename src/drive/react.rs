@@ -21,7 +21,7 @@ impl Drive {
                     let time = self.hold_time().filter(|_| raw != 0);
                     self.holds[usize::from(word)].refresh(now, time);
                 }
-                Reaction::Command(index) => self.command(now, index, row, raw),
+                Reaction::Command(index) => self.command(index, row, raw),
                 Reaction::Line => line = true,
             }
             if self.model.map.row(row).clears {
@@ -63,12 +63,12 @@ impl Drive {
         }
     }
 
-    fn command(&mut self, now: Instant, index: u8, row: RowId, raw: u32) {
+    fn command(&mut self, index: u8, row: RowId, raw: u32) {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         let action = actions.iter().find(|(it, _)| *it == value).map(|(_, action)| *action);
         if let Some(action) = action {
-            self.act(now, action);
+            self.act(action);
         }
     }
 

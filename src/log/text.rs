@@ -4,6 +4,7 @@ use super::{rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, Event, Transaction, What};
+use crate::serial::Mode;
 use crate::wire::function::EXCEPTION;
 use crate::wire::hex::to_hex;
 use crate::words::Word;
@@ -61,7 +62,7 @@ fn what(what: &What, bus: &Bus) -> String {
         What::Moved(mode) => format!("the line is {mode} from now on"),
         What::Lost(why) => format!("stream closed, {}", why::header(*why)),
         What::Drive { drive, unit, change } => {
-            format!("unit {unit} {}", change_text(bus.drive(*drive), change))
+            format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
         }
     }
 }
@@ -122,7 +123,7 @@ fn who_is_here(unit: u8, bus: &Bus) -> String {
     }
 }
 
-fn change_text(drive: &Drive, change: &Change) -> String {
+fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
     match change {
         Change::PoweredOn => "power on".into(),
         Change::Ready => "ready".into(),
@@ -145,7 +146,12 @@ fn change_text(drive: &Drive, change: &Change) -> String {
         Change::Unit { from, to } => {
             format!("answers to unit {to} from now on, no longer to {from}")
         }
-        Change::Mode { to: Some(to), .. } => format!("listens at {to} from now on"),
+        Change::Mode { to: Some(to), .. } => match line {
+            Some(line) if line != *to => {
+                format!("listens at {to} from now on; the line is {line}, so it is deaf")
+            }
+            _ => format!("listens at {to} from now on"),
+        },
         Change::Mode { to: None, .. } => {
             "hears nobody: its parameters hold codes that stand for no speed or format".into()
         }

@@ -53,9 +53,11 @@ pub struct Unit {
 /// What the file system says.
 pub fn write(path: &Path, ready: &Ready) -> io::Result<()> {
     let folder = path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    // As readable as any other file that a program makes.
+    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o644);
+    let mut file = tempfile::Builder::new().permissions(mode).tempfile_in(folder)?;
     serde_json::to_writer(&mut file, ready)?;
     writeln!(file)?;
-    file.persist(path)?;
+    file.persist(path).map_err(|failed| failed.error)?;
     Ok(())
 }

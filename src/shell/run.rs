@@ -1,11 +1,12 @@
 //! Runs a bench: opens all its ports, says so, serves them until somebody ends it.
 
 use super::clock::Clock;
+use super::library::plain;
 use super::logger::{LogFormat, Logger};
 use super::port::{Listener, Pty, Serial, Tty};
 use super::ready::{self, Endpoint, Ready, Unit};
 use super::serve::{Frames, Reopen, Served, serve_tcp, serve_tty};
-use super::stop;
+use super::stop::Stop;
 use crate::bench::{Bench, BenchLine, PortSpec};
 use crate::bus::Bus;
 use crate::serial::{Parity, Settings};
@@ -41,8 +42,19 @@ pub enum OpenError {
     #[error("{0}")]
     Port(String),
     /// A file of the run can't be written.
-    #[error("can't write {0}: {1}")]
+    #[error("can't write {0}: {error}", error = plain(.1))]
     File(PathBuf, io::Error),
+    /// The system lets nobody listen for signals.
+    #[error("can't listen for signals: {0}")]
+    Signals(io::Error),
+}
+
+/// Removes the ready file of an earlier run, which would speak of ports that are gone.
+fn forget(path: &Path) -> io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 type Task = Pin<Box<dyn Future<Output = ()>>>;
@@ -52,6 +64,11 @@ type Task = Pin<Box<dyn Future<Output = ()>>>;
 /// # Errors
 /// If a port or a file can't be opened; then nothing was served.
 pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
+    // Before anybody can learn that the run has begun.
+    let mut stop = Stop::listen().map_err(OpenError::Signals)?;
+    if let Some(path) = &options.ready_file {
+        forget(path).map_err(|error| OpenError::File(path.clone(), error))?;
+    }
     let names = bench.lines.len() > 1;
     let logger = Logger::start(options.format, names, options.log_file.as_deref());
     let logger = logger
@@ -72,7 +89,7 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     }
     let served = tokio::task::LocalSet::new();
     let handles: Vec<_> = tasks.into_iter().map(|task| served.spawn_local(task)).collect();
-    let why = served.run_until(stop::requested()).await;
+    let why = served.run_until(stop.requested()).await;
     // Ports close here: links are removed, clients see the end.
     handles.iter().for_each(|handle| handle.abort());
     served.await;
@@ -96,7 +113,7 @@ fn open(
             let link = link.as_ref().map(|link| base.join(link));
             let pty = open_pty(link.as_deref(), settings).map_err(refused)?;
             endpoint.path = Some(pty.path().display().to_string());
-            endpoint.link = link.map(|link| link.display().to_string());
+            endpoint.link = pty.link().map(|link| link.display().to_string());
             let reopen: Reopen = Box::new(|settings| Ok(Tty::Pty(open_pty(None, settings)?)));
             Box::pin(serve_tty(served(Frames::Serial(wire)), Tty::Pty(pty), reopen))
         }
@@ -170,7 +187,12 @@ fn endpoint(line: &BenchLine, bus: &Bus) -> Endpoint {
 fn introduce(line: &BenchLine, endpoint: &Endpoint) {
     let units = endpoint.units.iter().map(|it| format!("unit {} {}", it.unit, it.model));
     let units = units.collect::<Vec<_>>().join(", ");
-    let place = endpoint.link.as_ref().or(endpoint.path.as_ref()).or(endpoint.addr.as_ref());
+    // The link as the user wrote it, rather than where that leads.
+    let link = match &line.port {
+        PortSpec::Pty(Some(link)) => Some(link),
+        _ => None,
+    };
+    let place = link.or(endpoint.path.as_ref()).or(endpoint.addr.as_ref());
     let place = place.cloned().unwrap_or_default();
     let settings = match &endpoint.line {
         Some(settings) => format!("{settings} {}", endpoint.framing.to_uppercase()),
@@ -202,6 +224,7 @@ fn suggestion(line: &BenchLine, endpoint: &Endpoint, place: &str) -> Option<Stri
                 Parity::Odd => "odd",
             };
             let stop = format.stop_bits;
+            let place = quoted(place);
             Some(format!("mbpoll -m rtu -b {baud} -P {parity} -s {stop} {read} {place}"))
         }
         PortSpec::Tcp(_) => {
@@ -209,5 +232,14 @@ fn suggestion(line: &BenchLine, endpoint: &Endpoint, place: &str) -> Option<Stri
             Some(format!("mbpoll -m tcp -p {port} {read} {host}"))
         }
         _ => None,
+    }
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:,@%".contains(c);
+    match path.chars().all(plain) {
+        true => path.to_owned(),
+        false => format!("'{}'", path.replace('\'', r"'\''")),
     }
 }

@@ -37,7 +37,7 @@ def test_a_signal_is_a_clean_end_and_takes_the_link_away(emulate, tmp_path, numb
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_may_come_as_soon_as_the_ready_file_is_there(tmp_path, number):
-    for attempt in range(5):
+    for attempt in range(10):
         ready, link = tmp_path / f"ready-{attempt}.json", tmp_path / "drive.tty"
         command = [BINARY, "run", "hcfa-x", "--pty", link, "--ready-file", ready]
         with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:

@@ -6,11 +6,9 @@ use crate::bench::{BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, m
 use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
-use crate::model::load;
 use crate::testkit::{Rig, to_hex};
 use crate::wire::{ascii, rtu};
 use crate::words::{AlarmCause, Output, Quantity, Word};
-use std::sync::Arc;
 
 /// Plays the transcript in `text`.
 ///
@@ -19,8 +17,7 @@ use std::sync::Arc;
 pub fn run(text: &str, library: &dyn Library) -> Result<(), Failure> {
     let script = Script::parse(text)?;
     let line = line(&script, library)?;
-    let mut player =
-        Player { ascii: line.wire.mode.ascii, rig: Rig::line(line), pending: None, told: 0 };
+    let mut player = Player { rig: Rig::line(line), pending: None, told: 0 };
     for (number, step) in &script.steps {
         let played = player.settle(step).and_then(|()| player.play(*number, step));
         played.map_err(|what| player.failure(*number, what))?;
@@ -43,9 +40,7 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
 }
 
 fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
-    let (file, text) = library.fetch(&drive.model)?;
-    let model =
-        load(&text, &drive.options).map_err(|problems| format!("{file}: {}", problems[0]))?;
+    let model = library.model(&drive.model, &drive.options)?;
     let spec = DeviceSpec {
         unit: drive.unit,
         set: drive.set.clone(),
@@ -53,12 +48,11 @@ fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
         terminals: drive.terminals.clone(),
         position: drive.position,
     };
-    Device::new(Arc::new(model), &spec).map_err(|problems| problems[0].what.clone())
+    Device::new(model, &spec).map_err(|problems| problems[0].what.clone())
 }
 
 struct Player {
     rig: Rig,
-    ascii: bool,
     /// A request whose answer has not been looked at: what was asked and what came.
     pending: Option<(Option<Vec<u8>>, Vec<u8>)>,
     /// Characters of the log that `log` steps have passed.
@@ -95,7 +89,7 @@ impl Player {
             }
             Step::Answer(want) => {
                 let got = self.take_answer()?;
-                let unit = if self.ascii { ascii_unit(&got) } else { got.first().copied() };
+                let unit = if self.ascii() { ascii_unit(&got) } else { got.first().copied() };
                 let frame = |pdu: &Vec<u8>| self.frame(unit.unwrap_or(0), pdu);
                 same(want.as_ref().map(frame).unwrap_or_default(), got)?;
             }
@@ -156,8 +150,13 @@ impl Player {
         self.pending.take().map(|(_, got)| got).ok_or("nothing was asked".into())
     }
 
+    /// Does the line talk ASCII right now? Its drives may have taken it along to another mode.
+    fn ascii(&self) -> bool {
+        self.rig.wire().mode.ascii
+    }
+
     fn frame(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
-        match self.ascii {
+        match self.ascii() {
             true => ascii::encode(unit, pdu).to_vec(),
             false => rtu::encode(unit, pdu).to_vec(),
         }
