@@ -30,6 +30,8 @@ pub enum What {
     Broadcast {
         /// Who.
         drive: DriveId,
+        /// Its unit address at the time.
+        unit: u8,
         /// The request's PDU.
         request: Pdu,
         /// Why it did not execute it.

@@ -96,6 +96,19 @@ impl Unit {
     }
 }
 
+/// Reads a whole number as people write it: `100`, `-4`, `0x0C`, `0CH`.
+pub fn parse_integer(text: &str) -> Option<i64> {
+    let lower = text.to_ascii_lowercase();
+    if let Some(hex) = lower.strip_prefix("0x") {
+        return i64::from_str_radix(hex, 16).ok();
+    }
+    // A trailing H, as manuals write it; the digits stand for themselves.
+    match lower.strip_suffix('h') {
+        Some(hex) => i64::from_str_radix(hex, 16).ok(),
+        None => lower.parse().ok(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -203,7 +203,7 @@ fn shown(rig: &Rig, output: Output) -> bool {
     for (position, it) in words.positions.iter().filter(|(_, it)| it.signal == output) {
         let (word, bit) = ((position / 16) as usize, position % 16);
         let enabled = rig.drive().bank().raw(words.enabled_by[word]) >> bit & 1 != 0;
-        let shown = rig.drive().show(row_showing(rig, &Shows::OutputWord(word as u8)));
+        let shown = rig.drive().show(row_showing(rig, &Shows::OutputWord(word as u16)));
         let bit = shown >> bit & 1 != 0;
         places.push(if enabled { bit != it.inverted } else { places[0] });
         assert!(enabled || !bit, "a bit shows that is not enabled");

@@ -50,10 +50,12 @@ impl Bank {
         self.ram[usize::from(row.0)] = raw;
     }
 
-    /// Sets the value in force and the one that returns at power-on.
-    pub fn preset(&mut self, row: RowId, raw: u32) {
+    /// Sets the value in force and, unless the row is never kept, the one that returns at power-on.
+    pub fn preset(&mut self, model: &Model, row: RowId, raw: u32) {
         self.set(row, raw);
-        self.store[usize::from(row.0)] = raw;
+        if !model.map.row(row).volatile {
+            self.store[usize::from(row.0)] = raw;
+        }
     }
 
     /// Carries out a plan. The drive's own bank made it an instant ago, so there is nothing to fail.

@@ -75,6 +75,11 @@ impl Device {
                 Err(problem) => problems.push(problem),
             }
         }
+        if let (Some(name), Some(_)) = (names_unit(&model, spec), spec.unit) {
+            let what = format!("{name} holds the unit address, which `unit` says already");
+            let advice = Some("give one of the two".into());
+            problems.push(SpecProblem { wish: Wish::SetName(name.clone()), what, advice });
+        }
         let switches = switches(&model, spec, &mut problems);
         let terminals = terminals(&model, spec, &mut problems);
         let setups = (0..model.stations.len()).map(|station| {
@@ -90,6 +95,11 @@ impl Device {
             false => Err(problems),
         }
     }
+}
+
+/// The start value that is the unit address, if there is one.
+fn names_unit<'a>(model: &Model, spec: &'a DeviceSpec) -> Option<&'a String> {
+    spec.set.keys().find(|name| model.map.find(name) == Some(model.line.unit.row))
 }
 
 fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), SpecProblem> {

@@ -1,6 +1,7 @@
 //! Sets each drive's own baud and format parameters to the line's, as whoever wired the cell has done.
 
 use super::Device;
+use crate::drive::Setup;
 use crate::model::{Coded, Model, RowId};
 use crate::serial::Mode;
 
@@ -30,6 +31,8 @@ pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
         format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))
     })?;
     for setup in &mut device.setups {
+        agrees(&model, setup, line.baud.row, line.baud.digit, baud, mode)?;
+        agrees(&model, setup, line.format.row, line.format.digit, format, mode)?;
         put(&model, setup, line.baud.row, line.baud.digit, baud);
         put(&model, setup, line.format.row, line.format.digit, format);
     }
@@ -40,8 +43,27 @@ fn code<T>(coded: &Coded<T>, fits: impl Fn(&T) -> bool) -> Option<i64> {
     coded.codes.iter().find(|(_, meaning)| fits(meaning)).map(|(code, _)| *code)
 }
 
+/// A start value that somebody gave must not say something else than the line.
+fn agrees(
+    model: &Model,
+    setup: &Setup,
+    row: RowId,
+    digit: Option<u8>,
+    code: i64,
+    mode: Mode,
+) -> Result<(), String> {
+    let given = setup.values.iter().rev().find(|(id, _)| *id == row);
+    let Some((_, raw)) = given else { return Ok(()) };
+    let value = model.map.row(row).kind.value(*raw);
+    if digit.map_or(value, |digit| value >> (4 * digit) & 0xF) == code {
+        return Ok(());
+    }
+    let label = model.map.row(row).label();
+    Err(format!("{label} = {value} does not go with a line at {mode}"))
+}
+
 /// Puts `code` into the row, or into the digit of it, leaving its other digits as they are.
-fn put(model: &Model, setup: &mut crate::drive::Setup, row: RowId, digit: Option<u8>, code: i64) {
+fn put(model: &Model, setup: &mut Setup, row: RowId, digit: Option<u8>, code: i64) {
     let value = |(id, raw): &(RowId, u32)| (*id == row).then_some(*raw);
     let of_station = &model.stations[setup.station].init;
     let present = setup.values.iter().rev().find_map(value);

@@ -47,15 +47,15 @@ impl WireSpec {
         }
     }
 
-    /// The framing of a serial line at `rate` emulated seconds per wall second: a patient gap is a
-    /// fact of the wall, so it grows with the rate.
+    /// The framing of a serial line at `rate` emulated seconds per wall second. Pauses between bytes are
+    /// facts of the wall, so every gap grows with the rate.
     pub fn framing(&self, rate: f64) -> Framing {
         if self.mode.ascii {
             return Framing::Ascii { gap: ASCII_GAP.mul_f64(rate) };
         }
         let silence = self.mode.settings.silence(self.silence);
         match self.strict {
-            true => Framing::Rtu { gap: silence, patient: false },
+            true => Framing::Rtu { gap: silence.mul_f64(rate), patient: false },
             false => Framing::Rtu { gap: silence.max(PATIENT_GAP).mul_f64(rate), patient: true },
         }
     }

@@ -3,7 +3,7 @@
 use super::{Bus, LinkId, Output};
 use crate::event::{DriveId, Transaction, What};
 use crate::line::{Foreign, Heard};
-use crate::wire::function::READ;
+use crate::wire::function::{EXCEPTION, READ};
 use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
 
 /// What a link heard, detached from its buffer so that drives and links can be touched again.
@@ -19,6 +19,13 @@ impl Bus {
     pub(super) fn listen(&mut self, link: LinkId) {
         while let Some(taken) = self.take(link) {
             match taken {
+                // The exception bit makes it an answer: our own, come back through a 2-wire adapter, or
+                // one of a second drive at our address. Answering it would never end.
+                Taken::Request { unit, pdu }
+                    if pdu.first().is_some_and(|it| it & EXCEPTION != 0) =>
+                {
+                    self.emit(What::Foreign { unit, pdu, answer: true });
+                }
                 Taken::Request { unit: BROADCAST, pdu } => self.broadcast(pdu),
                 Taken::Request { unit, pdu } => self.answer(link, unit, pdu),
                 Taken::BadCrc(what) => self.answer_bad_crc(link, what),
@@ -78,9 +85,9 @@ impl Bus {
             if !self.hears(&self.drives[i]) {
                 continue;
             }
-            let drive = DriveId(i as u16);
+            let (drive, unit) = (DriveId(i as u16), self.drives[i].unit());
             let refusal = self.drives[i].request(self.now, &request).err();
-            self.emit(What::Broadcast { drive, request, refusal });
+            self.emit(What::Broadcast { drive, unit, request, refusal });
             self.after_drive(drive);
         }
     }

@@ -172,6 +172,11 @@ impl Bus {
         self.outputs.pop_front()
     }
 
+    /// When silence will end what was half received on `link`.
+    pub fn silence_at(&self, link: LinkId) -> Option<Instant> {
+        self.links.get(&link)?.line.deadline()
+    }
+
     /// When to come back at the latest, and why.
     pub fn poll_at(&self) -> Option<Wake> {
         let silence = |(id, link): (&LinkId, &Link)| {

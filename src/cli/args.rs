@@ -63,7 +63,7 @@ pub struct RunArgs {
     /// A model option (crc_error=silent) or a register's start value (accel_time=200); repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Seed of the run (default: drawn and printed)
+    /// Seed of the run, told on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Emulated seconds per wall second

@@ -12,13 +12,14 @@ use drivemu::serial::{Mode, Parity, Settings};
 use drivemu::shell::{
     Diagnostics, FileLibrary, LogFormat, OpenError, RunOptions, diagnose, run as run_bench,
 };
+use drivemu::units::parse_integer;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub fn run(args: RunArgs) -> Result<(), Failure> {
     diagnose(if args.quiet { Diagnostics::Quiet } else { Diagnostics::Normal });
-    if !(args.rate.is_finite() && args.rate > 0.0 && args.rate <= 1e6) {
-        return Err(Failure::invalid("--rate takes a number above 0, up to 1000000"));
+    if !(1e-3..=1e6).contains(&args.rate) {
+        return Err(Failure::invalid("--rate takes a number from 0.001 to 1000000"));
     }
     let (bench, base) = bench(&args)?;
     let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
@@ -37,7 +38,7 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
     runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
         OpenError::Port(_) => Failure { code: NO_PORT, text: error.to_string() },
-        OpenError::File(..) | OpenError::Signals(_) => {
+        OpenError::File(..) | OpenError::Signals(_) | OpenError::LineEnded(_) => {
             Failure { code: FAILED, text: error.to_string() }
         }
     })
@@ -51,13 +52,7 @@ fn draw_seed() -> u64 {
 /// The bench to run, and what its paths are relative to.
 fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
-    if let (None, Some(Some(link))) = (&args.target, &args.pty)
-        && link.to_str().is_some_and(|name| Builtin::find(name).is_some())
-    {
-        let link = link.display();
-        let text = format!("`--pty {link}` makes a link called {link}; write `run {link} --pty`");
-        return Err(Failure::invalid(text));
-    }
+    refuse_swallowed_model(args)?;
     let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
     if kind_of(&text) == "bench" {
         refuse_flags_of_a_line(args)?;
@@ -71,6 +66,21 @@ fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
         .map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
     let line = line(args, Arc::new(model), set)?;
     Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new()))
+}
+
+/// `--pty MODEL` and `--tcp MODEL` take the model for a link or an address.
+fn refuse_swallowed_model(args: &RunArgs) -> Result<(), Failure> {
+    let link = args.pty.iter().flatten().filter_map(|link| link.to_str());
+    let given =
+        link.map(|link| ("--pty", link)).chain(args.tcp.iter().map(|it| ("--tcp", it.as_str())));
+    for (flag, name) in given {
+        if args.target.is_none() && Builtin::find(name).is_some() {
+            let text =
+                format!("`{flag} {name}` does not run the model {name}; write `run {name} {flag}`");
+            return Err(Failure::invalid(text));
+        }
+    }
+    Ok(())
 }
 
 /// A bench file says these things itself.
@@ -118,20 +128,13 @@ fn wishes(
             choices.insert(key.into(), value.into());
             continue;
         }
-        let number = integer(value).ok_or_else(|| {
+        let number = parse_integer(value).ok_or_else(|| {
             let text = format!("--set {wish}: `{value}` is no number, and {key} is no option");
             Failure::invalid(text)
         })?;
         set.insert(key.into(), number);
     }
     Ok((choices, set))
-}
-
-fn integer(text: &str) -> Option<i64> {
-    match text.strip_prefix("0x") {
-        Some(hex) => i64::from_str_radix(hex, 16).ok(),
-        None => text.parse().ok(),
-    }
 }
 
 fn line(

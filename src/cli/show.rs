@@ -112,7 +112,7 @@ fn card(model: &Model, id: RowId) -> String {
     line("init", &row.kind.value(row.init).to_string());
     line("unit", &row.unit_text);
     line("applies", applies(row.applies));
-    line("kept", kept(model, row));
+    line("kept", &kept(model, row));
     line("section", &format!("{} ({})", row.see, model.manual));
     line(
         "wired to",
@@ -223,16 +223,21 @@ fn applies(applies: Applies) -> &'static str {
     }
 }
 
-fn kept(model: &Model, row: &Row) -> &'static str {
-    let direct = model
-        .map
-        .windows()
-        .iter()
-        .any(|window| window.base == 0 && window.layer == drivemu::model::Layer::RamAndStore);
-    match (row.access, row.volatile, direct) {
-        (Access::Read, ..) => "",
-        (_, true, _) => "never",
-        (_, false, true) => "with every write",
-        (_, false, false) => "when stored",
+/// How a value survives power-off: a plain write does it, a write through another window, a command, or nothing.
+fn kept(model: &Model, row: &Row) -> String {
+    let keeps = |window: &&drivemu::model::Window| {
+        let (first, last) = window.span;
+        window.layer == drivemu::model::Layer::RamAndStore && (first..=last).contains(&row.at)
+    };
+    let commands = model.wiring.commands.iter().flat_map(|it| &it.actions);
+    let stores =
+        commands.map(|(_, action)| *action).any(|it| it == drivemu::words::Action::StoreAll);
+    let window = model.map.windows().iter().find(keeps);
+    match (row.access, row.volatile, window) {
+        (Access::Read, ..) => String::new(),
+        (_, false, Some(window)) if window.base == 0 => "with every write".into(),
+        (_, false, Some(window)) => format!("when written through window {}", window.name),
+        (_, false, None) if stores => "when all values are stored".into(),
+        _ => "never".into(),
     }
 }

@@ -40,6 +40,8 @@ pub struct Drive {
     unit: u8,
     mode: Option<Mode>,
     position: i64,
+    /// What the position is called whenever power comes on: there is no absolute encoder.
+    position_at_power_on: i64,
     changes: VecDeque<Change>,
     /// A master has asked for a restart of the whole device, which only the bus knows.
     restart: bool,
@@ -50,7 +52,7 @@ impl Drive {
     /// A drive of `model` as the bench sets it up, switched on at `now`.
     pub fn new(model: Arc<Model>, setup: &Setup, now: Instant) -> Self {
         let mut bank = Bank::new(&model, setup.station);
-        setup.values.iter().for_each(|(row, raw)| bank.preset(*row, *raw));
+        setup.values.iter().for_each(|(row, raw)| bank.preset(&model, *row, *raw));
         let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
@@ -64,6 +66,7 @@ impl Drive {
             unit: 0,
             mode: None,
             position: setup.position,
+            position_at_power_on: setup.position,
             changes: VecDeque::with_capacity(8),
             restart: false,
             read: [0; 125],
@@ -216,10 +219,14 @@ impl Drive {
     }
 
     fn power_on(&mut self, now: Instant) {
+        if self.servo.is_enabled() {
+            self.changes.push_back(Change::Enabled(false));
+        }
         let servo = self.model.wiring.servo;
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         self.holds.iter_mut().for_each(Hold::stop);
         self.inputs = Inputs::default();
+        self.position = self.position_at_power_on;
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
         let from = std::mem::replace(&mut self.mode, mode);

@@ -8,24 +8,20 @@ use crate::time::{Duration, Instant};
 use crate::words::RowId;
 
 impl Drive {
-    /// Reacts to the rows that `plan` wrote, in order of address. Rows that only hold a value react to
-    /// nothing: whoever needs the value reads it.
+    /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
+    /// value react to nothing: whoever needs the value reads it.
     pub(super) fn react(&mut self, now: Instant, plan: &WritePlan) {
         let (mut inputs, mut line) = (false, false);
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {
-                Reaction::None => {}
+                Reaction::None | Reaction::Command(_) => {}
                 Reaction::Inputs => inputs = true,
                 Reaction::InputWord(word) => {
                     inputs = true;
                     let time = self.hold_time().filter(|_| raw != 0);
                     self.holds[usize::from(word)].refresh(now, time);
                 }
-                Reaction::Command(index) => self.command(index, row, raw),
                 Reaction::Line => line = true,
-            }
-            if self.model.map.row(row).clears {
-                self.bank.set(row, 0);
             }
         }
         if inputs {
@@ -33,6 +29,15 @@ impl Drive {
         }
         if line {
             self.follow_line_settings();
+        }
+        // Commands act on what the same request has written, so they come last.
+        for (row, raw) in plan.values() {
+            if let Reaction::Command(index) = self.model.wiring.reaction(row) {
+                self.command(index, row, raw);
+            }
+            if self.model.map.row(row).clears {
+                self.bank.set(row, 0);
+            }
         }
     }
 
@@ -63,7 +68,7 @@ impl Drive {
         }
     }
 
-    fn command(&mut self, index: u8, row: RowId, raw: u32) {
+    fn command(&mut self, index: u16, row: RowId, raw: u32) {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         let action = actions.iter().find(|(it, _)| *it == value).map(|(_, action)| *action);

@@ -40,12 +40,12 @@ impl Drive {
         }
     }
 
-    fn output_word(&self, word: u8) -> u32 {
+    fn output_word(&self, word: u16) -> u32 {
         let Some(words) = &self.model.wiring.output_words else { return 0 };
         let outputs = self.outputs();
         let enabled =
             words.enabled_by.get(usize::from(word)).map_or(0xFFFF, |row| self.bank.raw(*row));
-        let mine = words.positions.iter().filter(|(position, _)| position / 16 == u16::from(word));
+        let mine = words.positions.iter().filter(|(position, _)| position / 16 == word);
         let bit = |(position, shown): &(u16, crate::model::Shown)| {
             u32::from(shown.is_active(outputs)) << (position % 16)
         };

@@ -51,7 +51,7 @@ impl Follower {
         Foreign::Request(adu)
     }
 
-    /// A request to one of ours ends the other conversation.
+    /// A request to one of ours, or a long silence, ends the other conversation.
     pub fn forget(&mut self) {
         self.pending = None;
     }

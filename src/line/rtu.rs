@@ -9,6 +9,9 @@ use crate::time::{Duration, Instant};
 use crate::wire::NoiseCause;
 use crate::wire::rtu::{self, MAX, MIN};
 
+/// After this much silence nobody waits for an answer any more: what comes is a request, perhaps once again.
+const ANSWERS_WITHIN: Duration = Duration::from_millis(500);
+
 /// Room for one frame and a little of what runs over.
 const BUFFER: usize = 2 * MAX;
 
@@ -40,6 +43,9 @@ impl Rtu {
 
     pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
         self.discard_taken();
+        if now.since(self.last) > ANSWERS_WITHIN {
+            self.follower.forget();
+        }
         let room = BUFFER - self.bytes.len();
         let (fits, over) = bytes.split_at(bytes.len().min(room));
         self.bytes.extend_from_slice(fits);

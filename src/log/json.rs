@@ -32,9 +32,9 @@ pub fn object(event: &Event, name: &str, bus: &Bus) -> Value {
 fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
     match what {
         What::Transaction(it) => transaction(bus.drive(it.drive), it),
-        What::Broadcast { drive, request, refusal } => {
+        What::Broadcast { drive, unit, request, refusal } => {
             let drive = bus.drive(*drive);
-            let mut fields = json!({"unit": drive.unit(), "request": to_hex(request)});
+            let mut fields = json!({"unit": unit, "request": to_hex(request)});
             if let Some(refusal) = refusal {
                 merge(&mut fields, refused(drive, refusal));
             }

@@ -5,7 +5,6 @@ use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, Event, Transaction, What};
 use crate::serial::Mode;
-use crate::wire::function::EXCEPTION;
 use crate::wire::hex::to_hex;
 use crate::words::Word;
 
@@ -20,17 +19,14 @@ pub fn line(event: &Event, bus: &Bus) -> String {
 fn what(what: &What, bus: &Bus) -> String {
     match what {
         What::Transaction(it) => transaction(bus.drive(it.drive), it),
-        What::Broadcast { drive, request, refusal } => {
+        What::Broadcast { drive, unit, request, refusal } => {
             let drive = bus.drive(*drive);
             let asked = asked(drive, request);
             match refusal {
-                None => format!("broadcast to unit {}: {asked}", drive.unit()),
+                None => format!("broadcast to unit {unit}: {asked}"),
                 Some(refusal) => {
                     let why = why::refusal(drive, refusal);
-                    format!(
-                        "broadcast to unit {}: {asked}: refused, {why} -> silence",
-                        drive.unit()
-                    )
+                    format!("broadcast to unit {unit}: {asked}: refused, {why} -> silence")
                 }
             }
         }
@@ -91,7 +87,7 @@ fn asked(drive: &Drive, request: &[u8]) -> String {
         },
         rows::Told::Write(_, items) => format!("write {}", list(drive, &items)),
         rows::Told::Other => {
-            let function = request.first().copied().unwrap_or(0) & !EXCEPTION;
+            let function = request.first().copied().unwrap_or(0);
             format!("function {function:02X} {}", to_hex(request.get(1..).unwrap_or_default()))
         }
     }

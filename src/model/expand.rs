@@ -47,6 +47,14 @@ fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &
         let what = format!("copies {first} to {last} are none");
         return problems.push(Problem::value(path.key("n"), what).advise("first, then last"));
     }
+    if repeat.stride == 0 && first != last {
+        let what = "at a stride of 0 all copies would lie at one address";
+        return problems.push(Problem::value(path.key("stride"), what));
+    }
+    let copies = usize::from(last - first) + 1;
+    if copies * repeat.registers.len() + entries.len() > ROWS_MAX {
+        return problems.push(Problem::value(path.key("n"), "more rows than a model can have"));
+    }
     for (key, row) in &repeat.registers {
         let path = path.key("registers").key(key);
         if first != last && !key.contains("{n") {

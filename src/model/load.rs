@@ -14,8 +14,7 @@ pub type Choices = BTreeMap<String, String>;
 /// Compiles `text` with `choices`.
 ///
 /// # Errors
-/// Every problem of the file as it stands; if there is none, every problem of each option's choices laid
-/// over it; and wishes for options that it does not have.
+/// Every problem of the file with the chosen options laid over it, and wishes for options that it does not have.
 pub fn load(text: &str, choices: &Choices) -> Result<Model, Vec<Problem>> {
     let (file, mut problems) = section::tree(text)?;
     let options = read_options(&file, &mut problems);

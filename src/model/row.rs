@@ -1,6 +1,6 @@
 //! Compiled rows and the map that finds them by address.
 
-use crate::units::Unit;
+use crate::units::{Unit, parse_integer};
 use crate::words::RowId;
 use std::collections::BTreeMap;
 
@@ -148,8 +148,9 @@ impl Map {
                 index[usize::from(row.at + word)] = i as u16 + 1;
             }
         }
-        let shown_top =
-            |w: &Window| rows.iter().rfind(|r| w.shows(r.at)).map(|r| w.base + r.last());
+        let shown_top = |w: &Window| {
+            rows.iter().rfind(|r| w.shows(r.at)).map(|r| w.base + r.last().min(w.span.1))
+        };
         let top = windows.iter().filter_map(shown_top).max().unwrap_or(0);
         Self { rows, index, windows, top }
     }
@@ -286,14 +287,7 @@ impl Kind {
 
 /// Reads `0x1234`, `1234H` or `4660`.
 pub(crate) fn parse_address(text: &str) -> Option<u16> {
-    let lower = text.to_ascii_lowercase();
-    if let Some(hex) = lower.strip_prefix("0x") {
-        return u16::from_str_radix(hex, 16).ok();
-    }
-    if let Some(hex) = lower.strip_suffix('h') {
-        return u16::from_str_radix(hex, 16).ok();
-    }
-    lower.parse().ok()
+    u16::try_from(parse_integer(text)?).ok()
 }
 
 #[cfg(test)]

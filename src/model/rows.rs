@@ -49,8 +49,10 @@ pub(super) fn compile(
     let mut entries = without_overlaps(entries, &mut lost, problems);
     entries.sort_by_key(|entry| entry.row.at);
     let paths = entries.iter().map(|entry| entry.path.clone()).collect();
-    let rows = entries.iter().map(|entry| row(entry, problems)).collect();
-    Compiled { map: Map::new(rows, compile_windows(windows, problems)), paths, lost }
+    let rows: Vec<Row> = entries.iter().map(|entry| row(entry, problems)).collect();
+    let windows = compile_windows(windows, problems);
+    whole_pairs(&rows, &windows, problems);
+    Compiled { map: Map::new(rows, windows), paths, lost }
 }
 
 /// Leaves out rows whose addresses or names others have taken: one problem each.
@@ -209,6 +211,18 @@ fn spans(
         spans.push((low, high));
     }
     if spans.is_empty() { vec![limits] } else { spans }
+}
+
+/// A window shows a pair whole or not at all.
+fn whole_pairs(rows: &[Row], windows: &[Window], problems: &mut Vec<Problem>) {
+    for window in windows {
+        let shows = |at| (window.span.0..=window.span.1).contains(&at);
+        if let Some(row) = rows.iter().find(|row| shows(row.at) != shows(row.last())) {
+            let path = Path::root().key("windows").key(&window.name).key("span");
+            let what = format!("the span cuts the pair {} in two", row.id);
+            problems.push(Problem::value(path, what).advise("move its end by one"));
+        }
+    }
 }
 
 fn compile_windows(

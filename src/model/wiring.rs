@@ -45,7 +45,7 @@ pub enum Shows {
     /// Output signals, bit by bit.
     Bits(Vec<(u8, Shown)>),
     /// Word `n` of the output words.
-    OutputWord(u8),
+    OutputWord(u16),
     /// The input terminals.
     InputTerminals(Monitor),
     /// The output terminals.
@@ -150,9 +150,9 @@ pub enum Reaction {
     /// Input signals may have changed.
     Inputs,
     /// Input word `n` was refreshed.
-    InputWord(u8),
+    InputWord(u16),
     /// Commands, by index.
-    Command(u8),
+    Command(u16),
     /// How the drive is reached: unit address, speed, format.
     Line,
 }

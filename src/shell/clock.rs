@@ -39,6 +39,19 @@ impl Clock {
         }
     }
 
+    /// The moment of the wall that is `time` from now.
+    pub fn wall_after(time: Duration) -> tokio::time::Instant {
+        wall_now() + time
+    }
+
+    /// Waits for a moment of the wall; for ever without one.
+    pub async fn until_wall(at: Option<tokio::time::Instant>) {
+        match at {
+            Some(at) => tokio::time::sleep_until(at).await,
+            None => std::future::pending().await,
+        }
+    }
+
     /// Waits `time` of the wall, whatever the rate: for ports, which live out there.
     #[allow(clippy::disallowed_methods)] // This is the clock.
     pub async fn wall(time: Duration) {

@@ -44,6 +44,9 @@ pub enum OpenError {
     /// A file of the run can't be written.
     #[error("can't write {0}: {error}", error = plain(.1))]
     File(PathBuf, io::Error),
+    /// A line has ended by itself, which none does unless this program is wrong.
+    #[error("a line has ended by itself: {}", .0.as_deref().unwrap_or("no reason"))]
+    LineEnded(Option<String>),
     /// The system lets nobody listen for signals.
     #[error("can't listen for signals: {0}")]
     Signals(io::Error),
@@ -87,14 +90,28 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
         let ready = Ready { seed: options.seed, endpoints };
         ready::write(path, &ready).map_err(|error| OpenError::File(path.clone(), error))?;
     }
-    let served = tokio::task::LocalSet::new();
-    let handles: Vec<_> = tasks.into_iter().map(|task| served.spawn_local(task)).collect();
-    let why = served.run_until(stop.requested()).await;
+    let mut served = tokio::task::JoinSet::new();
+    let local = tokio::task::LocalSet::new();
+    tasks.into_iter().for_each(|task| {
+        served.spawn_local_on(task, &local);
+    });
+    let why = local.run_until(async {
+        tokio::select! {
+            why = stop.requested() => Ok(why),
+            Some(ended) = served.join_next() => Err(ended),
+        }
+    });
+    let why = why.await;
     // Ports close here: links are removed, clients see the end.
-    handles.iter().for_each(|handle| handle.abort());
-    served.await;
-    info!("{why}: ended");
-    Ok(())
+    served.abort_all();
+    local.await;
+    match why {
+        Ok(signal) => {
+            info!("{signal}: ended");
+            Ok(())
+        }
+        Err(ended) => Err(OpenError::LineEnded(ended.err().map(|error| error.to_string()))),
+    }
 }
 
 fn open(

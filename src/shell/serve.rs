@@ -11,7 +11,7 @@ pub use tty::{Reopen, serve_tty};
 use super::clock::Clock;
 use super::logger::Logger;
 use crate::bench::WireSpec;
-use crate::bus::{Bus, LinkId, Output, Wake, WakeReason};
+use crate::bus::{Bus, LinkId, Output};
 use crate::line::Framing;
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
@@ -100,16 +100,14 @@ impl Served {
         self.clock.until(self.bus.poll_at().map(|wake| wake.at)).await;
     }
 
-    /// The time at which input arrived that was just read.
+    /// The time at which input arrived on `link` that was just read.
     ///
     /// Input that waited while this process was kept from running is older than it looks; it came before
     /// the silence that nobody has heard yet.
-    fn arrival(&self) -> Instant {
+    fn arrival(&self, link: LinkId) -> Instant {
         let now = self.clock.now();
-        match self.bus.poll_at() {
-            Some(Wake { at, reason: WakeReason::Silence(_) }) if at <= now => {
-                at - Duration::from_nanos(1)
-            }
+        match self.bus.silence_at(link) {
+            Some(at) if at <= now => at - Duration::from_nanos(1),
             _ => now,
         }
     }

@@ -21,6 +21,7 @@ pub struct Rig {
     link: LinkId,
     now: Instant,
     events: Vec<Event>,
+    log: Vec<String>,
 }
 
 impl Rig {
@@ -78,7 +79,7 @@ impl Rig {
         let mut bus = line.bus();
         let link = bus.open(framing);
         let now = Instant::ZERO;
-        let mut rig = Self { line, bus, link, now, events: Vec::new() };
+        let mut rig = Self { line, bus, link, now, events: Vec::new(), log: Vec::new() };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
         let ready = ready.max().unwrap_or_default();
         rig.advance(ready);
@@ -123,17 +124,14 @@ impl Rig {
         super::to_hex(&answer[..answer.len() - 2])
     }
 
-    /// Puts `bytes` on the line, lets it fall silent, and gives back what came.
+    /// Puts `bytes` on the line, lets it fall silent where somebody waits for that, and gives back what came.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.bus.receive(self.now, self.link, bytes);
         let mut answer = self.drain();
-        if answer.is_empty() {
-            // Silence ends what did not end by itself.
-            while let Some(at) = self.silence() {
-                self.now = self.now.max(at);
-                self.bus.advance_to(self.now);
-                answer.extend(self.drain());
-            }
+        while let Some(at) = self.bus.silence_at(self.link) {
+            self.now = self.now.max(at);
+            self.bus.advance_to(self.now);
+            answer.extend(self.drain());
         }
         answer
     }
@@ -176,12 +174,12 @@ impl Rig {
 
     /// The log so far, as people read it.
     pub fn log(&self) -> String {
-        self.events.iter().map(|event| crate::log::text::line(event, &self.bus) + "\n").collect()
+        self.log_from(0)
     }
 
-    fn silence(&self) -> Option<Instant> {
-        let wake = self.bus.poll_at()?;
-        matches!(wake.reason, crate::bus::WakeReason::Silence(_)).then_some(wake.at)
+    /// The log from event number `first` on, counted from 0.
+    pub fn log_from(&self, first: usize) -> String {
+        self.log[first..].iter().map(|line| format!("{line}\n")).collect()
     }
 
     fn drain(&mut self) -> Vec<u8> {
@@ -189,7 +187,10 @@ impl Rig {
         while let Some(output) = self.bus.poll_output() {
             match output {
                 Output::Transmit { frame, .. } => sent.extend_from_slice(&frame),
-                Output::Event(event) => self.events.push(event),
+                Output::Event(event) => {
+                    self.log.push(crate::log::text::line(&event, &self.bus));
+                    self.events.push(event);
+                }
                 Output::Moved(mode) => {
                     self.line.wire.mode = mode;
                     self.bus.reframe_all(self.line.wire.framing(1.0));

@@ -160,10 +160,11 @@ fn every_function_code_and_length() {
         for len in [0, 1, 4, 5, 252] {
             let pdu = [&[function][..], &vec![0; len]].concat();
             let got = send(&mut bus, link, &encode(1, 1, &pdu));
-            if ![3, 6, 16].contains(&function) {
-                assert_eq!(got, *encode(1, 1, &[function | 0x80, 2]), "{function} {len}");
-            } else {
-                assert_eq!(got[7], function | 0x80, "{function} {len}");
+            match function {
+                // With the exception bit it is an answer, and gets none.
+                0x80.. => assert_eq!(got, [0_u8; 0], "{function} {len}"),
+                3 | 6 | 16 => assert_eq!(got[7], function | 0x80, "{function} {len}"),
+                _ => assert_eq!(got, *encode(1, 1, &[function | 0x80, 2]), "{function} {len}"),
             }
         }
     }

@@ -116,7 +116,7 @@ impl Wirer<'_> {
                 let path = path.key("registers").index(i);
                 self.one_word(*row, &path);
                 self.writable(*row, &path, At::Value);
-                self.react(*row, Reaction::InputWord(i as u8), &path, At::Value);
+                self.react(*row, Reaction::InputWord(i as u16), &path, At::Value);
             }
             let words = raw.registers.len();
             let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
@@ -154,7 +154,7 @@ impl Wirer<'_> {
                 }
                 actions.extend(self.word::<Action>(name, "action", &path).map(|it| (*value, it)));
             }
-            let index = self.wiring.commands.len() as u8;
+            let index = self.wiring.commands.len() as u16;
             self.react(row, Reaction::Command(index), &path, At::Key);
             self.wiring.commands.push(Commands { row, actions });
         }
@@ -175,7 +175,7 @@ impl Wirer<'_> {
             for (i, row) in rows.iter().enumerate() {
                 let path = path.key("registers").index(i);
                 self.one_word(*row, &path);
-                self.show(*row, Shows::OutputWord(i as u8), &path, At::Value);
+                self.show(*row, Shows::OutputWord(i as u16), &path, At::Value);
             }
             let words = raw.registers.len();
             let enabled_by = self.enable_words(&raw.enabled_by, words, &path);

@@ -1,9 +1,9 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
 use super::{Reaction, Wiring};
-use crate::model::RowId;
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
+use crate::model::{Applies, RowId};
 use crate::problem::{Path, Problem};
 
 /// One problem for each row (each path, where rows are folded) whose `sim` says the wrong thing.
@@ -17,6 +17,13 @@ pub(in crate::model) fn check_inert(
     let mut told: Vec<&Path> = Vec::new();
     for ((id, row), path) in rows.map.rows().zip(&rows.paths) {
         let wired = used[usize::from(id.0)];
+        let waits = row.applies != Applies::Now && wiring.reaction(id) != Reaction::Line;
+        if wired && waits && !told.contains(&path) {
+            told.push(path);
+            let what =
+                format!("{} takes effect at once, so `applies` can say nothing else", row.id);
+            problems.push(Problem::key(path.key("applies"), what).advise("leave it out"));
+        }
         if wired != row.inert || told.contains(&path) {
             continue;
         }

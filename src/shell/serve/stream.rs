@@ -26,7 +26,7 @@ pub async fn serve_stream(
             biased;
             read = stream.read(&mut buffer) => match read? {
                 0 => return Ok(()),
-                len => line.bus.receive(line.arrival(), link, &buffer[..len]),
+                len => line.bus.receive(line.arrival(link), link, &buffer[..len]),
             },
             () = line.woken() => line.bus.advance_to(line.clock.now()),
         }

@@ -14,7 +14,7 @@ const REST: Duration = Duration::from_secs(1);
 /// Serves `line` to the clients of `listener` for ever.
 pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
     let mut clients = Clients::default();
-    let mut resting = false;
+    let mut rested = None;
     loop {
         while let Some(send) = line.next_send() {
             match send {
@@ -35,13 +35,12 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             biased;
             event = listener.next() => Some(event),
             () = line.woken() => None,
-            () = Clock::wall(REST), if resting => {
-                resting = false;
+            () = Clock::until_wall(rested), if rested.is_some() => {
+                rested = None;
                 listener.accept_again();
                 None
             }
         };
-        let now = line.arrival();
         match event {
             None => line.bus.advance_to(line.clock.now()),
             Some(TcpEvent::Opened(id, from)) => {
@@ -50,7 +49,10 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             }
             Some(TcpEvent::Bytes(id, bytes)) => {
                 let link = clients.by_client.get(&id).copied();
-                link.into_iter().for_each(|link| line.bus.receive(now, link, &bytes));
+                if let Some(link) = link {
+                    let at = line.arrival(link);
+                    line.bus.receive(at, link, &bytes);
+                }
             }
             Some(TcpEvent::Closed(id, error)) => {
                 clients.remove(id).into_iter().for_each(|link| line.bus.close(link));
@@ -64,7 +66,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             }
             Some(TcpEvent::NotAccepting(error)) => {
                 warn!("{}: can't accept clients for now: {error}", line.name);
-                resting = true;
+                rested = Some(Clock::wall_after(REST));
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::serial::Settings;
 use crate::shell::clock::Clock;
 use crate::shell::port::Tty;
 use crate::time::Duration;
-use std::io;
+use std::io::{self, ErrorKind};
 use tracing::{info, warn};
 
 /// Opens the port again after it was lost, with the line's present settings.
@@ -47,7 +47,7 @@ async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -
             Ok(0) => line.bus.advance_to(line.clock.now()),
             Ok(len) => {
                 watch.look(line, tty);
-                let at = line.arrival();
+                let at = line.arrival(link);
                 line.bus.receive(at, link, &buffer[..len]);
             }
             Err(error) => break error,
@@ -59,12 +59,18 @@ async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -
 
 /// While the port is away the drives live on.
 async fn wait_for(line: &mut Served, reopen: &Reopen) -> Tty {
+    let mut told = ErrorKind::NotFound;
     loop {
         Clock::wall(LOOK_AGAIN).await;
         line.bus.advance_to(line.clock.now());
         while line.next_send().is_some() {}
-        if let Ok(tty) = reopen(line.settings()) {
-            return tty;
+        match reopen(line.settings()) {
+            Ok(tty) => return tty,
+            Err(error) if error.kind() != told => {
+                told = error.kind();
+                warn!("{}: {error}; still waiting", line.name);
+            }
+            Err(_) => {}
         }
     }
 }
@@ -87,14 +93,20 @@ async fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Re
 /// Moves the port to other settings, once the answer in the old ones has left.
 async fn retune(tty: &mut Tty, Settings { baud, format }: Settings) -> io::Result<()> {
     match tty {
-        Tty::Pty(pty) => pty.preset(baud, format.stop_bits),
+        // Only what others see of it; bytes pass all the same.
+        Tty::Pty(pty) => {
+            let _ = pty.preset(baud, format.stop_bits);
+            Ok(())
+        }
         Tty::Serial(serial) => {
             let mut patience = FLUSH;
             while serial.unsent()? > 0 && !patience.is_zero() {
                 Clock::wall(FLUSH_STEP).await;
                 patience = patience.saturating_sub(FLUSH_STEP);
             }
-            serial.retune(baud, format.data_bits, format.parity.letter(), format.stop_bits)
+            serial.retune(baud, format.data_bits, format.parity.letter(), format.stop_bits)?;
+            serial.note().into_iter().for_each(|note| warn!("{note}"));
+            Ok(())
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Plays a transcript against drives under the virtual clock.
 
 use super::Failure;
-use super::script::{Check, DriveLine, Script, Step, integer};
+use super::script::{Check, DriveLine, Script, Step};
 use crate::bench::{BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, match_line};
 use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
 use crate::testkit::{Rig, to_hex};
+use crate::units::parse_integer;
 use crate::wire::{ascii, rtu};
 use crate::words::{AlarmCause, Output, Quantity, Word};
 
@@ -19,7 +20,7 @@ pub fn run(text: &str, library: &dyn Library) -> Result<(), Failure> {
     let line = line(&script, library)?;
     let mut player = Player { rig: Rig::line(line), pending: None, told: 0 };
     for (number, step) in &script.steps {
-        let played = player.settle(step).and_then(|()| player.play(*number, step));
+        let played = player.settle(step).and_then(|()| player.play(step));
         played.map_err(|what| player.failure(*number, what))?;
     }
     let last = script.steps.last().map_or(1, |(number, _)| *number);
@@ -55,7 +56,7 @@ struct Player {
     rig: Rig,
     /// A request whose answer has not been looked at: what was asked and what came.
     pending: Option<(Option<Vec<u8>>, Vec<u8>)>,
-    /// Characters of the log that `log` steps have passed.
+    /// Events that `log` steps have passed.
     told: usize,
 }
 
@@ -73,7 +74,7 @@ impl Player {
         }
     }
 
-    fn play(&mut self, _number: usize, step: &Step) -> Result<(), String> {
+    fn play(&mut self, step: &Step) -> Result<(), String> {
         match step {
             Step::Ask(unit, pdu) => {
                 let unit = unit.unwrap_or_else(|| self.rig.drive().unit());
@@ -112,14 +113,13 @@ impl Player {
             }
             Step::Do(words) => self.act(words)?,
             Step::Log(want) => {
-                let log = self.rig.log();
-                let new = &log[self.told..];
+                let new = self.rig.log_from(self.told);
                 if !new.contains(want.as_str()) {
                     return Err(format!(
                         "the log does not say `{want}`; since then it said\n{new}"
                     ));
                 }
-                self.told = log.len();
+                self.told = self.rig.events().len();
             }
         }
         Ok(())
@@ -199,7 +199,7 @@ fn look(drive: &Drive, check: &Check) -> Result<(), String> {
     } else {
         return Err(format!("no signal, quantity or register `{name}`"));
     };
-    let as_number = integer(want).map(|number| number.to_string());
+    let as_number = parse_integer(want).map(|number| number.to_string());
     match got == *want || Some(&got) == as_number.as_ref() {
         true => Ok(()),
         false => Err(format!("{name} is {got}, not {want}")),

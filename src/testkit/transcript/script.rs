@@ -4,6 +4,7 @@ use super::Failure;
 use crate::serial::Settings;
 use crate::testkit::hex;
 use crate::time::{Duration, parse_duration};
+use crate::units::parse_integer;
 use std::collections::BTreeMap;
 
 /// A transcript as it is written.
@@ -145,25 +146,19 @@ impl Script {
                 drive.options.insert((*name).into(), (*choice).into());
             }
             ("set", [name, value]) => {
-                let value = integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
+                let value =
+                    parse_integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
                 drive.set.insert((*name).into(), value);
             }
             ("switches", [value]) => drive.switches = Some(number_of(value)?),
             ("terminal", [name]) => drive.terminals.push((*name).into()),
             ("position", [value]) => {
-                drive.position = integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
+                drive.position =
+                    parse_integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
             }
             _ => return Err(format!("`{word}` begins no line of a transcript")),
         }
         Ok(())
-    }
-}
-
-/// Reads `100`, `-4`, `0x0C`.
-pub(super) fn integer(text: &str) -> Option<i64> {
-    match text.strip_prefix("0x") {
-        Some(hex) => i64::from_str_radix(hex, 16).ok(),
-        None => text.parse().ok(),
     }
 }
 
