@@ -106,6 +106,14 @@ pub fn label(row: &Row) -> String {
     }
 }
 
+/// `C101 jog speed = 7000`: the bare number of a value that was refused, to be held against the range.
+pub fn refused_text(drive: &Drive, item: Item) -> String {
+    match item {
+        Item::Row(id, value) => format!("{} = {value}", label(drive.model().map.row(id))),
+        item => text(drive, item),
+    }
+}
+
 /// A value as the row means it: words in hex where bits have names, and the meaning of a code.
 pub fn number(row: &Row, value: i64) -> String {
     if let Some(meaning) = row.values.get(&value) {

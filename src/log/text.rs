@@ -21,7 +21,8 @@ fn what(what: &What, bus: &Bus) -> String {
         What::Transaction(it) => transaction(bus.drive(it.drive), it),
         What::Broadcast { drive, unit, request, refusal } => {
             let drive = bus.drive(*drive);
-            let asked = asked(drive, request);
+            let tell = if refusal.is_some() { rows::refused_text } else { rows::text as Tell };
+            let asked = asked(drive, request, tell);
             match refusal {
                 None => format!("broadcast to unit {unit}: {asked}"),
                 Some(refusal) => {
@@ -66,26 +67,30 @@ fn what(what: &What, bus: &Bus) -> String {
 fn transaction(drive: &Drive, it: &Transaction) -> String {
     let unit = it.unit;
     if let Some(refusal) = &it.refusal {
-        let (asked, why) = (asked(drive, &it.request), why::refusal(drive, refusal));
+        let (asked, why) =
+            (asked(drive, &it.request, rows::refused_text), why::refusal(drive, refusal));
         return format!("unit {unit} {asked}: refused, {why} -> exception {:02X}", refusal.code);
     }
     match rows::request(drive, &it.request) {
         rows::Told::Read(span) => {
             let items = rows::answer(drive, span, &it.answer);
-            format!("unit {unit} read {}", list(drive, &items))
+            format!("unit {unit} read {}", list(drive, &items, rows::text))
         }
-        _ => format!("unit {unit} {}", asked(drive, &it.request)),
+        _ => format!("unit {unit} {}", asked(drive, &it.request, rows::text)),
     }
 }
 
+/// How a row and its value are told.
+type Tell = fn(&Drive, rows::Item) -> String;
+
 /// What a request asks for, without an answer.
-fn asked(drive: &Drive, request: &[u8]) -> String {
+fn asked(drive: &Drive, request: &[u8], tell: Tell) -> String {
     match rows::request(drive, request) {
         rows::Told::Read(span) => match span.count() {
             1 => format!("read 0x{:04X}", span.start()),
             count => format!("read 0x{:04X} x {count}", span.start()),
         },
-        rows::Told::Write(_, items) => format!("write {}", list(drive, &items)),
+        rows::Told::Write(_, items) => format!("write {}", list(drive, &items, tell)),
         rows::Told::Other => {
             let function = request.first().copied().unwrap_or(0);
             format!("function {function:02X} {}", to_hex(request.get(1..).unwrap_or_default()))
@@ -93,8 +98,8 @@ fn asked(drive: &Drive, request: &[u8]) -> String {
     }
 }
 
-fn list(drive: &Drive, items: &[rows::Item]) -> String {
-    let told = items.iter().take(ROWS_TOLD).map(|item| rows::text(drive, *item));
+fn list(drive: &Drive, items: &[rows::Item], tell: Tell) -> String {
+    let told = items.iter().take(ROWS_TOLD).map(|item| tell(drive, *item));
     let told = told.collect::<Vec<_>>().join(", ");
     match items.len().checked_sub(ROWS_TOLD) {
         None | Some(0) => told,
