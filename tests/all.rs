@@ -1,5 +1,6 @@
 //! The integration tests in one binary, one subject a module.
 
+mod allocation;
 mod documents;
 mod expect;
 mod frames;

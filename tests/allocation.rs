@@ -1,0 +1,48 @@
+//! An answer costs no heap: frames, requests and events lie in place.
+
+use crate::kit::MODELS;
+use drivemu::bench::{Device, DeviceSpec, WireSpec};
+use drivemu::bus::{Bus, LinkId};
+use drivemu::model::Choices;
+use drivemu::model::builtin::Builtin;
+use drivemu::time::{Duration, Instant};
+use drivemu::wire::rtu;
+
+#[test]
+fn a_transaction_in_the_steady_state_allocates_nothing() {
+    for name in MODELS {
+        let model = Builtin::find(name).expect("embedded").load(&Choices::new()).expect("valid");
+        let device = Device::new(model.into(), &DeviceSpec::default()).expect("no wishes");
+        let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
+        let mut bus = Bus::new();
+        let drive = bus.add(device.model.clone(), &device.setups[0], 0);
+        let link = bus.open(wire.framing(1.0));
+        let (unit, row) = (bus.drive(drive).unit(), device.model.showcase().expect("a row"));
+        let [high, low] = row.at.to_be_bytes();
+        let read = rtu::encode(unit, &[3, high, low, 0, row.kind.words() as u8]);
+        let refused = rtu::encode(unit, &[3, 0xFF, 0xF0, 0, 1]);
+        let mut now = Instant::from_millis(2000);
+        bus.advance_to(now);
+        while bus.poll_output().is_some() {}
+        let mut rounds = |bus: &mut Bus| {
+            for _ in 0..100 {
+                now += Duration::from_millis(1);
+                transact(bus, link, now, &read);
+                transact(bus, link, now, &refused);
+            }
+        };
+        // Until every buffer has its size.
+        rounds(&mut bus);
+        let counted = allocation_counter::measure(|| rounds(&mut bus));
+        assert_eq!(counted.count_total, 0, "{name}");
+    }
+}
+
+fn transact(bus: &mut Bus, link: LinkId, now: Instant, frame: &[u8]) {
+    bus.receive(now, link, frame);
+    let mut outputs = 0;
+    while bus.poll_output().is_some() {
+        outputs += 1;
+    }
+    assert_eq!(outputs, 2, "an answer and an event");
+}
