@@ -74,10 +74,10 @@ impl Bus {
                 if usize::from(index) >= have {
                     return Err(CommandError::NoTerminal { got: index, have });
                 }
-                drive.set_terminal(index, signal);
+                drive.set_terminal(now, index, signal);
             }
             Command::Raise { cause, .. } => {
-                if !drive.raise(cause) {
+                if !drive.raise(now, cause) {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }

@@ -4,13 +4,13 @@ use super::Drive;
 use crate::bank::WritePlan;
 use crate::event::Change;
 use crate::model::{Applies, Reaction};
-use crate::time::{Duration, Instant};
-use crate::words::RowId;
+use crate::time::Duration;
+use crate::words::{Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address. Rows that only hold a value react to
     /// nothing: whoever needs the value reads it.
-    pub(super) fn react(&mut self, now: Instant, plan: &WritePlan) {
+    pub(super) fn react(&mut self, plan: &WritePlan) {
         let (mut inputs, mut line) = (false, false);
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {
@@ -19,9 +19,10 @@ impl Drive {
                 Reaction::InputWord(word) => {
                     inputs = true;
                     let time = self.hold_time().filter(|_| raw != 0);
-                    self.holds[usize::from(word)].refresh(now, time);
+                    self.holds[usize::from(word)].refresh(self.now, time);
                 }
-                Reaction::Command(index) => self.command(now, index, row, raw),
+                Reaction::Command(index) => self.command(index, row, raw),
+                Reaction::Trigger(index) => self.trigger(index, raw),
                 Reaction::Line => line = true,
             }
             if self.model.map.row(row).clears {
@@ -37,12 +38,12 @@ impl Drive {
     }
 
     /// Lets input words fall back that were not refreshed in time.
-    pub(super) fn expire_words(&mut self, now: Instant) {
+    pub(super) fn expire_words(&mut self) {
         let model = self.model.clone();
         let Some(words) = &model.wiring.input_words else { return };
         let mut expired = false;
         for (hold, word) in self.holds.iter_mut().zip(&words.rows) {
-            let (Some(held), Some(rule)) = (hold.expired(now), &words.hold) else { continue };
+            let (Some(held), Some(rule)) = (hold.expired(self.now), &words.hold) else { continue };
             self.bank.set(*word, 0);
             let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
             let change = Change::WordExpired { word: *word, hold: rule.row, held_ms };
@@ -63,12 +64,26 @@ impl Drive {
         }
     }
 
-    fn command(&mut self, now: Instant, index: u8, row: RowId, raw: u32) {
+    fn command(&mut self, index: u8, row: RowId, raw: u32) {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         let action = actions.iter().find(|(it, _)| *it == value).map(|(_, action)| *action);
         if let Some(action) = action {
-            self.act(now, action);
+            self.act(action, Modifiers::default());
+        }
+    }
+
+    fn trigger(&mut self, index: u8, raw: u32) {
+        let triggers = &self.model.wiring.triggers[usize::from(index)];
+        let is_set = |bit: u8| raw >> bit & 1 != 0;
+        let mut modifiers = Modifiers::default();
+        triggers
+            .modifiers
+            .iter()
+            .filter(|(bit, _)| is_set(*bit))
+            .for_each(|(_, it)| modifiers.insert(*it));
+        if let Some((_, action)) = triggers.actions.iter().find(|(bit, _)| is_set(*bit)) {
+            self.act(*action, modifiers);
         }
     }
 

@@ -276,11 +276,15 @@ impl Kind {
         }
     }
 
+    /// The bits of `value`, without those that do not fit.
+    pub fn wrapped(self, value: i64) -> u32 {
+        if self.words() == 1 { value as u32 & 0xFFFF } else { value as u32 }
+    }
+
     /// The bits of `value`, clamped to what fits.
     pub fn raw(self, value: i64) -> u32 {
         let (low, high) = self.limits();
-        let bits = value.clamp(low, high) as u32;
-        if self.words() == 1 { bits & 0xFFFF } else { bits }
+        self.wrapped(value.clamp(low, high))
     }
 }
 
