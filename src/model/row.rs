@@ -311,6 +311,8 @@ mod tests {
         assert_eq!(Kind::I32.value(0xFFFF_FFF6), -10);
         assert_eq!(Kind::U16.raw(70_000), 0xFFFF);
         assert_eq!(Kind::I16.raw(-70_000), 0x8000);
+        assert_eq!(Kind::I32.wrapped(0x8000_0000), 0x8000_0000);
+        assert_eq!(Kind::I16.wrapped(-70_000), 0xEE90);
     }
 
     #[test]
