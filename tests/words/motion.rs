@@ -76,3 +76,43 @@ fn look(rig: &mut Rig, places: &mut Vec<i64>, count: usize) {
         places.push(rig.drive().quantity(Quantity::PositionActual));
     }
 }
+
+/// What a program reads in the log of a motion, and that people read the same.
+#[cfg(feature = "cli")]
+#[test]
+fn the_log_tells_of_motions() {
+    let mut rig = acme(&DeviceSpec::default());
+    give(&mut rig, Action::RunStart);
+    give(&mut rig, Action::Enable);
+    let second = Duration::from_secs(1);
+    for action in [Action::MoveStart, Action::QuickStop, Action::RunStart, Action::Stop] {
+        give(&mut rig, action);
+        rig.advance(second);
+    }
+    jog(&mut rig, true);
+    rig.advance(second);
+    give(&mut rig, Action::Release);
+    rig.advance(second);
+    let fields = ["event", "to", "rpm", "at", "action", "why", "text"];
+    let told = rig.events().iter().map(|event| {
+        let object = drivemu::log::json::object(event, "line", rig.bus());
+        let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
+        fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
+    });
+    let motions = ["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"];
+    let told: Vec<String> =
+        told.filter(|it| motions.iter().any(|kind| it.starts_with(kind))).collect();
+    let want = [
+        "ignored | run_start | the servo is off | unit 5 run_start ignored: the servo is off",
+        "moves | 200000 | unit 5 moves to 200000",
+        "stands | 200000 | unit 5 stands at 200000",
+        "runs | 60.0 | unit 5 runs at 60 rpm",
+        "stops | unit 5 stops",
+        "stands | 331072 | unit 5 stands at 331072",
+        "jogs | 60.0 | unit 5 jogs at 60 rpm",
+        "coasts | unit 5 runs out, the servo is off",
+        // A second less half a ramp, and half of the 100 ms in which it runs out.
+        "stands | 462144 | unit 5 stands at 462144",
+    ];
+    assert_eq!(told, want);
+}
