@@ -6,7 +6,7 @@ use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{AlarmCause, Refusal, RowId};
+use crate::words::{Action, AlarmCause, Refusal, RowId};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,6 +158,37 @@ pub enum Change {
         /// The new one.
         to: Option<Mode>,
     },
+    /// It goes to a position.
+    Moves {
+        /// In counts of the drive.
+        to: i64,
+    },
+    /// It goes at a speed by order.
+    Runs {
+        /// In thousandths of a revolution a minute; the sign is the direction.
+        mrpm: i64,
+    },
+    /// It goes at a speed while a level asks for it.
+    Jogs {
+        /// In thousandths of a revolution a minute; the sign is the direction.
+        mrpm: i64,
+    },
+    /// It slows down to a standstill.
+    Stops,
+    /// Its power stage went off while it moved: it runs out.
+    Coasts,
+    /// It stands.
+    Stands {
+        /// In counts of the drive.
+        at: i64,
+    },
+    /// An order came and does nothing.
+    Ignored {
+        /// The order.
+        action: Action,
+        /// Why.
+        why: Ignored,
+    },
     /// An input terminal got another level.
     Terminal {
         /// Index from 0.
@@ -165,4 +196,15 @@ pub enum Change {
         /// Carries a signal?
         signal: bool,
     },
+}
+
+/// Why an order does nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ignored {
+    /// The power stage is off.
+    PowerOff,
+    /// A stop level holds the axis.
+    Held,
+    /// The axis moves.
+    Moving,
 }

@@ -26,7 +26,7 @@
 //! drive                 the only place that sees registers AND behaviours
 //! bank  behaviour       cells and plans | state machines
 //! model                 YAML -> Model
-//! line                  silence and frames
+//! line  motion          silence and frames | closed form
 //! event                 what happened
 //! words  serial         what models and behaviours both say | speed and format of a line
 //! time  units  wire  problem                               what everyone may say
@@ -41,6 +41,7 @@ pub mod event;
 pub mod line;
 pub mod log;
 pub mod model;
+pub mod motion;
 pub mod problem;
 pub mod serial;
 #[cfg(feature = "cli")]

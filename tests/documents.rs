@@ -8,7 +8,7 @@ use drivemu::model;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
-use drivemu::words::{Action, AlarmCause, Cause, Input, Output, Quantity, Word};
+use drivemu::words::{Action, AlarmCause, Cause, Input, Modifier, Output, Quantity, Setting, Word};
 use serde_yaml::Value;
 use std::fmt::Write as _;
 
@@ -31,18 +31,24 @@ fn roles() -> String {
     let outputs = "Signals out of the drive: `signals.outputs` wires them. `not` and a signal shows \
                    its opposite.";
     section::<Output>(&mut out, "Output signals", outputs);
-    let actions = "What writing a value to a row of `signals.inputs.commands` sets off, at once and \
-                   with every write.";
+    let actions = "What writing a value to a row of `signals.inputs.commands`, or a 1 to a bit of a row of \
+                   `signals.inputs.triggers`, sets off, at once and with every write. Of several bits at \
+                   once the action that stands first here acts alone.";
     section::<Action>(&mut out, "Actions", actions);
+    let modifiers = "What other bits of a row of `signals.inputs.triggers` say about the action.";
+    section::<Modifier>(&mut out, "Modifiers", modifiers);
     let quantities = "Numbers that the drive computes: `quantities` says which row shows each.";
     section::<Quantity>(&mut out, "Quantities", quantities);
     out.push_str("\nThe row's unit must fit, with any factor before it (`0.1 rpm`, `100 ms`):\n\n");
     for quantity in Quantity::ALL {
-        let symbols: Vec<_> = match quantity.dimension() {
-            Dimension::None => vec!["no unit".to_owned()],
-            dimension => Unit::symbols_of(dimension).map(|it| format!("`{it}`")).collect(),
-        };
-        writeln!(out, "- `{}`: {}", quantity.name(), symbols.join(" or ")).expect("a string");
+        units(&mut out, quantity.name(), &[quantity.dimension()]);
+    }
+    let settings = "Numbers that motions go by: `quantities` says which row holds each. They are read when \
+                    a motion starts.";
+    section::<Setting>(&mut out, "Settings", settings);
+    out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move from its start speed, to the speed:\n\n");
+    for setting in Setting::ALL {
+        units(&mut out, setting.name(), setting.dimensions());
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");
@@ -53,6 +59,16 @@ fn roles() -> String {
                   exception code. Of all that hold, the first in the list answers.";
     section::<Cause>(&mut out, "Causes of refusal", causes);
     out
+}
+
+/// The units that fit the role `name`.
+fn units(out: &mut String, name: &str, dimensions: &[Dimension]) {
+    let symbols = |it: &Dimension| match it {
+        Dimension::None => vec!["no unit".to_owned()],
+        _ => Unit::symbols_of(*it).map(|it| format!("`{it}`")).collect(),
+    };
+    let symbols: Vec<_> = dimensions.iter().flat_map(symbols).collect();
+    writeln!(out, "- `{name}`: {}", symbols.join(" or ")).expect("a string");
 }
 
 fn section<W: Word>(out: &mut String, title: &str, about: &str) {

@@ -30,16 +30,9 @@ const WAITING: [(&str, &str); 2] = [
 
 /// Frames that replay but whose effect waits: model, a row that will not be `sim: none` any more once the
 /// effect is there, and what is missing.
-const EFFECT_WAITS: [(&str, &str, &str, &str); 9] = [
-    ("H-38", "hcfa-x", "P03.04", "jogs forward"),
-    ("H-40", "hcfa-x", "P03.04", "jogs in reverse"),
-    ("H-42", "hcfa-x", "P03.15", "stops jogging with a ramp"),
+const EFFECT_WAITS: [(&str, &str, &str, &str); 2] = [
     ("H-44", "hcfa-x", "P20.12", "starts homing"),
-    ("Y-27", "yako-closed-loop", "motion_command", "starts a relative move"),
-    ("Y-31", "yako-closed-loop", "motion_command", "starts velocity mode"),
-    ("Y-35", "yako-closed-loop", "motion_command", "starts homing"),
-    ("Y-37", "yako-closed-loop", "motion_command", "stops with a ramp"),
-    ("Y-39", "yako-closed-loop", "motion_command", "stops at once"),
+    ("Y-35", "yako-closed-loop", "home_method", "starts homing"),
 ];
 
 const FOLDERS: [&str; 3] = ["tests/frames/hcfa-x", "tests/frames/k-series", "tests/frames/yako"];

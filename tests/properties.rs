@@ -111,8 +111,16 @@ proptest! {
     /// Whoever looks more often sees the same things happen at the same instants.
     #[test]
     fn slices_of_time_make_no_difference(happenings in happenings(), slices in prop::collection::vec(0..9_000u64, 0..40)) {
-        let seldom = live(&happenings, &[]);
-        let often = live(&happenings, &slices);
+        let seldom = live("hcfa-x", &happenings, &[]);
+        let often = live("hcfa-x", &happenings, &slices);
+        prop_assert_eq!(seldom, often);
+    }
+
+    /// The same with an axis that moves: every answer holds the same position and speed.
+    #[test]
+    fn slices_of_time_move_no_axis(happenings in orders(), slices in prop::collection::vec(0..9_000u64, 0..40)) {
+        let seldom = live("yako-open-loop", &happenings, &[]);
+        let often = live("yako-open-loop", &happenings, &slices);
         prop_assert_eq!(seldom, often);
     }
 
@@ -223,9 +231,30 @@ fn happenings() -> impl Strategy<Value = Vec<(u64, Happening)>> {
     })
 }
 
-/// Ten seconds of an HCFA drive, looked at in between at `slices`.
-fn live(happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Event>, Vec<u8>) {
-    let (mut bus, link) = bus("hcfa-x", Framing::Rtu { gap: GAP, patient: true });
+/// Orders to a stepper, its settings changed and its state read in between.
+fn orders() -> impl Strategy<Value = Vec<(u64, Happening)>> {
+    let drive = DriveId(0);
+    let setting = (0x001D..=0x0025u16, 0..400u16).prop_map(|(at, value)| request(1, at, value));
+    let order = (0..0x400u16).prop_map(|bits| request(1, 0x0027, bits));
+    let other = prop::sample::select(&[0x11u16, 0x12, 0x12, 0x31][..]);
+    let other = other.prop_map(|value| request(1, 0x002D, value));
+    let read = Just(rtu::encode(1, &[3, 0, 7, 0, 6]).to_vec());
+    let happening = prop_oneof![
+        4 => order.prop_map(Happening::Bytes),
+        3 => setting.prop_map(Happening::Bytes),
+        3 => read.prop_map(Happening::Bytes),
+        1 => other.prop_map(Happening::Bytes),
+        1 => Just(Happening::Do(Command::PowerCycle { drive })),
+    ];
+    prop::collection::vec((0..8_000u64, happening), 1..30).prop_map(|mut all| {
+        all.sort_by_key(|(at, _)| *at);
+        all
+    })
+}
+
+/// Ten seconds of a drive, looked at in between at `slices`.
+fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Event>, Vec<u8>) {
+    let (mut bus, link) = bus(model, Framing::Rtu { gap: GAP, patient: true });
     let (mut events, mut sent) = (Vec::new(), Vec::new());
     let mut looks: Vec<(u64, Option<&Happening>)> = slices.iter().map(|at| (*at, None)).collect();
     looks.extend(happenings.iter().map(|(at, happening)| (*at, Some(happening))));
@@ -234,7 +263,10 @@ fn live(happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Event>, Vec<u8>
     for (at, happening) in looks {
         let now = Instant::from_millis(at);
         match happening {
-            None => bus.advance_to(now),
+            None => {
+                bus.advance_to(now);
+                bus.catch_up();
+            }
             Some(Happening::Bytes(bytes)) => bus.receive(now, link, bytes),
             Some(Happening::Do(command)) => {
                 bus.command(now, *command).expect("a drive that has it all");
@@ -266,7 +298,7 @@ fn the_slices_have_something_to_cut() {
         (3, Happening::Bytes(vec![1, 2, 3, 4])),
     ];
     happenings.push((8_000, Happening::Do(Command::PowerCycle { drive: DriveId(0) })));
-    let (events, _) = live(&happenings, &[]);
+    let (events, _) = live("hcfa-x", &happenings, &[]);
     let at = |ms| {
         events
             .iter()

@@ -2,13 +2,15 @@
 //!
 //! The `match`es have no `_` arm on purpose: a new word does not compile until it is tested here.
 
+mod motion;
+
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::Command;
 use drivemu::event::{Change, DriveId, What};
 use drivemu::model::{RowId, Shows, Wiring};
 use drivemu::testkit::{Rig, to_hex};
-use drivemu::words::{Action, AlarmCause, Input, Output, Quantity, Word};
+use drivemu::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Word};
 use std::time::Duration;
 
 const ACME: &str = include_str!("models/acme-s1.yaml");
@@ -38,6 +40,36 @@ fn each_input_acts_from_each_source() {
                     source(&mut rig, input, false);
                     assert!(rig.drive().output(Output::Alarm), "an edge, no level: {place}");
                 }
+                Input::Release => {
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    assert!(!rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                    source(&mut rig, input, false);
+                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                }
+                Input::Stop | Input::QuickStop => {
+                    running(&mut rig);
+                    source(&mut rig, input, true);
+                    let at_once = !rig.drive().output(Output::Moving);
+                    assert_eq!(at_once, input == Input::QuickStop, "{place}{}", rig.log());
+                    rig.advance(Duration::from_millis(100));
+                    assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                    give(&mut rig, Action::RunStart);
+                    assert!(!rig.drive().output(Output::Moving), "it is a level: {place}");
+                    source(&mut rig, input, false);
+                    give(&mut rig, Action::RunStart);
+                    assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
+                Input::JogPos | Input::JogNeg => {
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    rig.advance(Duration::from_millis(500));
+                    let want = if input == Input::JogPos { 60 } else { -60 };
+                    assert_eq!(rig.drive().quantity(Quantity::SpeedActual), want, "{place}");
+                    source(&mut rig, input, false);
+                    rig.advance(Duration::from_millis(100));
+                    assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
                 Input::AlarmForce => {
                     source(&mut rig, input, true);
                     assert_eq!(rig.drive().quantity(Quantity::AlarmCode), 0x99, "{place}");
@@ -60,6 +92,12 @@ fn each_output_shows_both_ways() {
             }
             Output::Ready | Output::Alarm => raise(&mut rig, AlarmCause::Overload),
             Output::Enabled | Output::BrakeOpen => give(&mut rig, Action::Enable),
+            Output::Moving | Output::ZeroSpeed => running(&mut rig),
+            Output::InPosition => {
+                give(&mut rig, Action::Enable);
+                give(&mut rig, Action::MoveStart);
+                rig.advance(Duration::from_secs(2));
+            }
         }
         seen.push(shown(&rig, output));
         assert!(seen[0] != seen[1], "`{}` is always {}", output.name(), seen[0]);
@@ -74,6 +112,13 @@ fn each_quantity_shows() {
         let mut rig = acme(&spec);
         let want = match quantity {
             Quantity::PositionActual => -70_000,
+            Quantity::SpeedActual => {
+                running(&mut rig);
+                let row = row_showing(&rig, &Shows::Quantity(quantity));
+                let value = rig.drive().show(row) as i64;
+                assert_eq!((value, rig.drive().quantity(quantity)), (600, 60), "in tenths");
+                continue;
+            }
             Quantity::AlarmCode => {
                 raise(&mut rig, AlarmCause::Overload);
                 0x41
@@ -93,6 +138,8 @@ fn each_action_acts() {
         match action {
             Action::Release => give(&mut rig, Action::Enable),
             Action::AlarmReset => raise(&mut rig, AlarmCause::Overload),
+            Action::Stop | Action::QuickStop => running(&mut rig),
+            Action::MoveStart | Action::RunStart => give(&mut rig, Action::Enable),
             Action::Enable
             | Action::ClearPosition
             | Action::StoreAll
@@ -101,6 +148,12 @@ fn each_action_acts() {
         }
         give(&mut rig, action);
         let want = match action {
+            Action::QuickStop => {
+                Change::Stands { at: rig.drive().quantity(Quantity::PositionActual) }
+            }
+            Action::Stop => Change::Stops,
+            Action::MoveStart => Change::Moves { to: 200_005 },
+            Action::RunStart => Change::Runs { mrpm: 60_000 },
             Action::Enable => Change::Enabled(true),
             Action::Release => Change::Enabled(false),
             Action::AlarmReset => Change::AlarmCleared,
@@ -127,8 +180,20 @@ fn each_alarm_has_its_number() {
     assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x99]);
 }
 
+/// A drive with a run of 60 rpm and a move of 200000 counts to make, unless `spec` says otherwise.
 fn acme(spec: &DeviceSpec) -> Rig {
-    rig_of(ACME, &[], spec)
+    let mut spec = spec.clone();
+    for (row, value) in [("P002", 600), ("P003", 200_000)] {
+        spec.set.entry(row.to_owned()).or_insert(value);
+    }
+    rig_of(ACME, &[], &spec)
+}
+
+/// Lets it run at 60 rpm.
+fn running(rig: &mut Rig) {
+    give(rig, Action::Enable);
+    give(rig, Action::RunStart);
+    rig.advance(Duration::from_millis(200));
 }
 
 fn wiring(rig: &Rig) -> &Wiring {
@@ -154,11 +219,24 @@ fn set_bit(rig: &mut Rig, row: RowId, bit: u16, on: bool) {
 
 /// Gives the command that stands for `action`.
 fn give(rig: &mut Rig, action: Action) {
+    give_with(rig, action, &[]);
+}
+
+/// Gives the command that stands for `action`, with the bits of `modifiers`.
+fn give_with(rig: &mut Rig, action: Action, modifiers: &[Modifier]) {
+    let word = |value: i64| u16::try_from(value).expect("one word");
     let of_row = |it: &drivemu::model::Commands| {
         let value = it.actions.iter().find(|(_, it)| *it == action)?.0;
-        Some((it.row, u16::try_from(value).expect("one word")))
+        Some((it.row, word(value)))
     };
-    let (row, value) = wiring(rig).commands.iter().find_map(of_row).expect("every action is wired");
+    let of_bits = |it: &drivemu::model::Triggers| {
+        let bit = it.actions.iter().find(|(_, it)| *it == action)?.0;
+        let with = it.modifiers.iter().filter(|(_, it)| modifiers.contains(it));
+        Some((it.row, with.fold(1 << bit, |value, (bit, _)| value | 1 << bit)))
+    };
+    let command = wiring(rig).commands.iter().find_map(of_row);
+    let command = command.or_else(|| wiring(rig).triggers.iter().find_map(of_bits));
+    let (row, value) = command.expect("every action is wired");
     write(rig, row, value);
 }
 

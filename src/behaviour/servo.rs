@@ -1,7 +1,7 @@
 //! Ready, enabled, tripped: whether the power stage is on, and why not.
 //!
 //! The power stage is on while somebody wants it on (a level, or a command that stays), the drive is
-//! initialised and no alarm stands. When an alarm goes, a want that still holds switches it on again.
+//! initialised, no level releases it and no alarm stands. When an alarm goes, a want that still holds switches it on again.
 
 use crate::event::Change;
 use crate::time::{Duration, Instant};
@@ -25,6 +25,8 @@ pub struct Servo {
     starts_until: Option<Instant>,
     /// A level that asks for the power stage.
     wanted: bool,
+    /// A level that forbids it, whatever asks for it.
+    released: bool,
     /// A command that asked for it and stays until another takes it back.
     latched: bool,
     alarm: Option<Trip>,
@@ -40,6 +42,7 @@ impl Servo {
         Self {
             starts_until,
             wanted: false,
+            released: false,
             latched: enabled,
             alarm: None,
             standing: None,
@@ -54,7 +57,7 @@ impl Servo {
 
     /// Is the power stage on?
     pub fn is_enabled(&self) -> bool {
-        self.is_ready() && (self.wanted || self.latched)
+        self.is_ready() && (self.wanted || self.latched) && !self.released
     }
 
     /// The alarm that stands.
@@ -76,9 +79,9 @@ impl Servo {
         self.settle(tell);
     }
 
-    /// The level that asks for the power stage.
-    pub fn want(&mut self, wanted: bool, tell: &mut impl FnMut(Change)) {
-        self.wanted = wanted;
+    /// The level that asks for the power stage, and the one that forbids it.
+    pub fn want(&mut self, wanted: bool, released: bool, tell: &mut impl FnMut(Change)) {
+        (self.wanted, self.released) = (wanted, released);
         self.settle(tell);
     }
 
@@ -140,7 +143,7 @@ mod tests {
     fn not_enabled_before_it_is_ready() {
         let mut servo = Servo::power_on(Instant::ZERO, Duration::from_secs(1), false);
         let mut changes = Vec::new();
-        servo.want(true, &mut |change| changes.push(change));
+        servo.want(true, false, &mut |change| changes.push(change));
         assert!(!servo.is_enabled());
         servo.advance(Instant::from_millis(1000), &mut |change| changes.push(change));
         assert_eq!(changes, [Change::Ready, Change::Enabled(true)]);
@@ -149,7 +152,7 @@ mod tests {
     #[test]
     fn a_want_that_still_holds_enables_again_after_a_reset() {
         let (servo, changes) = after(|servo, mut tell| {
-            servo.want(true, &mut tell);
+            servo.want(true, false, &mut tell);
             servo.trip(FORCED, &mut tell);
             servo.reset(&mut tell);
         });

@@ -64,6 +64,7 @@ impl Bus {
             | Command::Raise { drive, .. }
             | Command::PowerCycle { drive } => drive,
         };
+        let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
         match command {
             Command::Terminal { index, signal, .. } => {
@@ -72,10 +73,10 @@ impl Bus {
                 if usize::from(index) >= have {
                     return Err(CommandError::NoTerminal { got: index, have });
                 }
-                drive.set_terminal(index, signal);
+                drive.set_terminal(now, index, signal);
             }
             Command::Raise { cause, .. } => {
-                if !drive.raise(cause) {
+                if !drive.raise(now, cause) {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }

@@ -167,6 +167,13 @@ impl Bus {
         self.now = self.now.max(now);
     }
 
+    /// Brings each drive's clock up to the bus's. For those who look at drives from outside: a drive that
+    /// nothing happens to stays at the time of its last request, where a moving axis was elsewhere.
+    pub fn catch_up(&mut self) {
+        let now = self.now;
+        self.drives.iter_mut().for_each(|drive| drive.advance_to(now));
+    }
+
     /// The next thing that leaves the bus.
     pub fn poll_output(&mut self) -> Option<Output> {
         self.outputs.pop_front()

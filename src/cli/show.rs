@@ -4,7 +4,9 @@ use super::Failure;
 use super::args::{ShowArgs, TableFormat};
 use super::output::print;
 use drivemu::bench::Library;
-use drivemu::model::{Access, Applies, Choices, Kind, Model, Reaction, Row, RowId, Shows, load};
+use drivemu::model::{
+    Access, Applies, Choices, Counts, Kind, Model, Reaction, Row, RowId, Shows, load,
+};
 use drivemu::problem::render::render;
 use drivemu::shell::FileLibrary;
 use drivemu::words::Word;
@@ -183,7 +185,16 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Shows::OutputTerminals(_) => "output terminals".into(),
     });
     let reaction = || match model.wiring.reaction(id) {
-        Reaction::None => "settings".to_owned(),
+        Reaction::None => goes_by(model, id),
+        Reaction::Trigger(index) => {
+            let it = &model.wiring.triggers[usize::from(index)];
+            let actions = it.actions.iter().map(|(bit, it)| (bit, it.name()));
+            let modifiers = it.modifiers.iter().map(|(bit, it)| (bit, it.name()));
+            let mut bits: Vec<_> = actions.chain(modifiers).collect();
+            bits.sort_unstable();
+            let bits = bits.iter().map(|(bit, name)| format!("bit {bit} {name}"));
+            bits.collect::<Vec<_>>().join(", ")
+        }
         Reaction::Inputs => "input signals".into(),
         Reaction::InputWord(word) => format!("input word {}", word + 1),
         Reaction::Command(index) => {
@@ -196,6 +207,15 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Reaction::Line => "how the drive is reached".into(),
     };
     Some(shows.unwrap_or_else(reaction))
+}
+
+/// What goes by the value of a row that sets nothing off.
+fn goes_by(model: &Model, id: RowId) -> String {
+    let axis = &model.wiring.axis;
+    let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
+    let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
+    let names: Vec<_> = settings.chain(counts).collect();
+    if names.is_empty() { "settings".into() } else { names.join(", ") }
 }
 
 fn kind(kind: Kind) -> &'static str {

@@ -1,9 +1,11 @@
 //! One station of a drive: the only place that sees registers and behaviours.
 //!
+//! It keeps the time up to which everything has happened to it; a position is that of this instant.
 //! A request becomes a plan, the plan is committed, and what the written rows are wired to reacts
 //! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
+mod motion;
 mod react;
 mod setup;
 mod show;
@@ -12,14 +14,14 @@ mod signals;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Hold, Servo, Trip};
-use crate::event::Change;
+use crate::behaviour::{Hold, Motor, Servo, Trip};
+use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
 use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
-use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Refusal};
+use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -28,6 +30,8 @@ use std::sync::Arc;
 pub struct Drive {
     model: Arc<Model>,
     station: usize,
+    /// Up to here everything has happened.
+    now: Instant,
     /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
     bank: Bank,
     servo: Servo,
@@ -39,7 +43,9 @@ pub struct Drive {
     switches: u8,
     unit: u8,
     mode: Option<Mode>,
-    position: i64,
+    motor: Motor,
+    /// Where the machine is when the position register says 0.
+    zero: i64,
     /// What the position is called whenever power comes on: there is no absolute encoder.
     position_at_power_on: i64,
     changes: VecDeque<Change>,
@@ -57,15 +63,17 @@ impl Drive {
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
+            motor: Motor::standing(now, 0.0, model.wiring.axis.coast),
+            zero: 0,
             model,
             station: setup.station,
+            now,
             bank,
             terminals: setup.terminals,
             inputs: Inputs::default(),
             switches: setup.switches,
             unit: 0,
             mode: None,
-            position: setup.position,
             position_at_power_on: setup.position,
             changes: VecDeque::with_capacity(8),
             restart: false,
@@ -103,35 +111,39 @@ impl Drive {
 
     /// Answers a request that arrived at `now`, or says why not.
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
+        self.advance_to(now);
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
             return Err(self.refuse(Cause::Function, Detail::Function(*function)));
         }
         match Request::parse(pdu, self.model.line.length_check) {
             Ok(Request::Read(span)) => self.answer_read(span),
             Ok(Request::WriteOne { address, value }) => {
-                self.write(now, Span::one(address), value)?;
+                self.write(Span::one(address), value)?;
                 Ok(Response::WriteOne { address, value: value.get(0).unwrap_or(0) })
             }
             Ok(Request::WriteMany { span, values }) => {
-                self.write(now, span, values)?;
+                self.write(span, values)?;
                 Ok(Response::WriteMany(span))
             }
             Err(malformed) => Err(self.refuse_malformed(pdu, malformed)),
         }
     }
 
-    /// Trips with `cause`, if the model has an alarm for it.
+    /// Trips with `cause` at `now`, if the model has an alarm for it.
     ///
     /// Returns whether it has.
-    pub fn raise(&mut self, cause: AlarmCause) -> bool {
+    pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
+        self.advance_to(now);
         let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
         let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
         self.servo.trip(trip, &mut |change| self.changes.push_back(change));
+        self.settle();
         true
     }
 
-    /// Puts a signal on input terminal `index`, or takes it off.
-    pub fn set_terminal(&mut self, index: u8, signal: bool) {
+    /// Puts a signal on input terminal `index` at `now`, or takes it off.
+    pub fn set_terminal(&mut self, now: Instant, index: u8, signal: bool) {
+        self.advance_to(now);
         let bit = 1 << index;
         if (self.terminals & bit != 0) != signal {
             self.terminals ^= bit;
@@ -140,8 +152,9 @@ impl Drive {
         }
     }
 
-    /// Power off and on.
+    /// Power off and on. What moved stands.
     pub fn power_cycle(&mut self, now: Instant) {
+        self.advance_to(now);
         self.bank.power_cycle();
         self.power_on(now);
     }
@@ -153,15 +166,20 @@ impl Drive {
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
     pub fn advance_to(&mut self, now: Instant) {
-        let tell = &mut |change| self.changes.push_back(change);
-        self.servo.advance(now, tell);
-        self.expire_words(now);
+        while let Some(at) = self.deadline().filter(|at| *at <= now) {
+            self.now = self.now.max(at);
+            self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
+            self.end_motion();
+            self.expire_words();
+            self.settle();
+        }
+        self.now = self.now.max(now);
     }
 
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let holds = self.holds.iter().filter_map(Hold::deadline);
-        holds.chain(self.servo.deadline()).min()
+        holds.chain(self.servo.deadline()).chain(self.motor.deadline()).min()
     }
 
     /// The next change that has not been told yet.
@@ -177,11 +195,11 @@ impl Drive {
         Ok(Response::Read(&self.read[..len]))
     }
 
-    fn write(&mut self, now: Instant, span: Span, words: Words<'_>) -> Result<(), Refusal> {
+    fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {
         let gate = Gate { enabled: self.servo.is_enabled() };
         let plan = self.bank.plan_write(&self.model, span, words, gate)?;
         self.bank.commit(&self.model, &plan);
-        self.react(now, &plan);
+        self.react(&plan);
         Ok(())
     }
 
@@ -224,9 +242,11 @@ impl Drive {
         }
         let servo = self.model.wiring.servo;
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
+        let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
+        self.motor = Motor::standing(now, position, coast);
         self.holds.iter_mut().for_each(Hold::stop);
         self.inputs = Inputs::default();
-        self.position = self.position_at_power_on;
+        self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
         let from = std::mem::replace(&mut self.mode, mode);
@@ -236,6 +256,7 @@ impl Drive {
         }
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
+        self.settle();
     }
 
     /// The unit address that switches and parameters ask for.
@@ -258,14 +279,20 @@ impl Drive {
         Some(Mode { ascii, settings: Settings { baud, format } })
     }
 
-    fn act(&mut self, action: Action) {
+    fn act(&mut self, action: Action, modifiers: Modifiers) {
+        if self.waits_for_rest(action) {
+            return self.changes.push_back(Change::Ignored { action, why: Ignored::Moving });
+        }
         let tell = &mut |change| self.changes.push_back(change);
         match action {
+            Action::QuickStop | Action::Stop | Action::MoveStart | Action::RunStart => {
+                self.order(action, modifiers);
+            }
             Action::Enable => self.servo.latch(true, tell),
             Action::Release => self.servo.latch(false, tell),
             Action::AlarmReset => self.servo.reset(tell),
             Action::ClearPosition => {
-                self.position = 0;
+                self.zero = self.motor.position(self.now);
                 self.changes.push_back(Change::PositionCleared);
             }
             Action::StoreAll => {
@@ -282,5 +309,6 @@ impl Drive {
             }
             Action::PowerCycle => self.restart = true,
         }
+        self.settle();
     }
 }

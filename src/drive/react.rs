@@ -4,22 +4,22 @@ use super::Drive;
 use crate::bank::WritePlan;
 use crate::event::Change;
 use crate::model::{Applies, Reaction};
-use crate::time::{Duration, Instant};
-use crate::words::RowId;
+use crate::time::Duration;
+use crate::words::{Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
     /// value react to nothing: whoever needs the value reads it.
-    pub(super) fn react(&mut self, now: Instant, plan: &WritePlan) {
+    pub(super) fn react(&mut self, plan: &WritePlan) {
         let (mut inputs, mut line) = (false, false);
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {
-                Reaction::None | Reaction::Command(_) => {}
+                Reaction::None | Reaction::Command(_) | Reaction::Trigger(_) => {}
                 Reaction::Inputs => inputs = true,
                 Reaction::InputWord(word) => {
                     inputs = true;
                     let time = self.hold_time().filter(|_| raw != 0);
-                    self.holds[usize::from(word)].refresh(now, time);
+                    self.holds[usize::from(word)].refresh(self.now, time);
                 }
                 Reaction::Line => line = true,
             }
@@ -32,8 +32,10 @@ impl Drive {
         }
         // Commands act on what the same request has written, so they come last.
         for (row, raw) in plan.values() {
-            if let Reaction::Command(index) = self.model.wiring.reaction(row) {
-                self.command(index, row, raw);
+            match self.model.wiring.reaction(row) {
+                Reaction::Command(index) => self.command(index, row, raw),
+                Reaction::Trigger(index) => self.trigger(index, raw),
+                _ => {}
             }
             if self.model.map.row(row).clears {
                 self.bank.set(row, 0);
@@ -42,12 +44,12 @@ impl Drive {
     }
 
     /// Lets input words fall back that were not refreshed in time.
-    pub(super) fn expire_words(&mut self, now: Instant) {
+    pub(super) fn expire_words(&mut self) {
         let model = self.model.clone();
         let Some(words) = &model.wiring.input_words else { return };
         let mut expired = false;
         for (hold, word) in self.holds.iter_mut().zip(&words.rows) {
-            let (Some(held), Some(rule)) = (hold.expired(now), &words.hold) else { continue };
+            let (Some(held), Some(rule)) = (hold.expired(self.now), &words.hold) else { continue };
             self.bank.set(*word, 0);
             let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
             let change = Change::WordExpired { word: *word, hold: rule.row, held_ms };
@@ -73,7 +75,21 @@ impl Drive {
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         let action = actions.iter().find(|(it, _)| *it == value).map(|(_, action)| *action);
         if let Some(action) = action {
-            self.act(action);
+            self.act(action, Modifiers::default());
+        }
+    }
+
+    fn trigger(&mut self, index: u16, raw: u32) {
+        let triggers = &self.model.wiring.triggers[usize::from(index)];
+        let is_set = |bit: u8| raw >> bit & 1 != 0;
+        let mut modifiers = Modifiers::default();
+        triggers
+            .modifiers
+            .iter()
+            .filter(|(bit, _)| is_set(*bit))
+            .for_each(|(_, it)| modifiers.insert(*it));
+        if let Some((_, action)) = triggers.actions.iter().find(|(bit, _)| is_set(*bit)) {
+            self.act(*action, modifiers);
         }
     }
 

@@ -9,9 +9,7 @@ impl Drive {
     pub fn show(&self, row: RowId) -> u32 {
         match self.model.wiring.shows(row) {
             None => self.bank.raw(row),
-            Some(Shows::Quantity(quantity)) => {
-                self.model.map.row(row).kind.raw(self.quantity(*quantity))
-            }
+            Some(Shows::Quantity(quantity)) => self.show_quantity(row, *quantity),
             Some(Shows::Bits(bits)) => {
                 let outputs = self.outputs();
                 let bit = |(bit, shown): &(u8, crate::model::Shown)| {
@@ -30,13 +28,24 @@ impl Drive {
         self.outputs().has(signal)
     }
 
-    /// A number that the drive computes, in the base unit of its dimension.
+    /// A number that the drive computes, in the base unit of its dimension, rounded.
     pub fn quantity(&self, quantity: Quantity) -> i64 {
         match quantity {
-            Quantity::PositionActual => self.position,
+            Quantity::PositionActual => self.position(),
+            Quantity::SpeedActual => self.rpm().round() as i64,
             Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),
+        }
+    }
+
+    fn show_quantity(&self, row: RowId, quantity: Quantity) -> u32 {
+        let row = self.model.map.row(row);
+        match quantity {
+            Quantity::SpeedActual => row.kind.raw((self.rpm() / row.unit.scale).round() as i64),
+            // A counter that is full begins anew; it does not stick.
+            Quantity::PositionActual => row.kind.wrapped(self.position()),
+            _ => row.kind.raw(self.quantity(quantity)),
         }
     }
 

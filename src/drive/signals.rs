@@ -21,7 +21,8 @@ impl Drive {
         if now.risen_since(before).has(Input::AlarmReset) {
             self.servo.reset(tell);
         }
-        self.servo.want(now.has(Input::ServoOn), tell);
+        self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
+        self.settle();
     }
 
     /// The output signals, right now.
@@ -33,6 +34,9 @@ impl Drive {
             .with(Output::Enabled, enabled)
             .with(Output::Alarm, self.servo.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
+            .with(Output::Moving, self.motor.is_moving())
+            .with(Output::InPosition, self.motor.is_in_position())
+            .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.

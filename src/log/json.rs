@@ -136,6 +136,15 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             let text = |mode: &Option<crate::serial::Mode>| mode.map(|mode| mode.to_string());
             ("mode_changed", json!({"from": text(from), "to": text(to)}))
         }
+        Change::Moves { to } => ("moves", json!({"to": to})),
+        Change::Runs { mrpm } => ("runs", json!({"rpm": text::rpm(*mrpm)})),
+        Change::Jogs { mrpm } => ("jogs", json!({"rpm": text::rpm(*mrpm)})),
+        Change::Stops => ("stops", json!({})),
+        Change::Coasts => ("coasts", json!({})),
+        Change::Stands { at } => ("stands", json!({"at": at})),
+        Change::Ignored { action, why } => {
+            ("ignored", json!({"action": action.name(), "why": why::ignored(*why)}))
+        }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();
             let name = terminals.map(|it| it.name(usize::from(*index)));

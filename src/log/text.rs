@@ -156,10 +156,24 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::Mode { to: None, .. } => {
             "hears nobody: its parameters hold codes that stand for no speed or format".into()
         }
+        Change::Moves { to } => format!("moves to {to}"),
+        Change::Runs { mrpm } => format!("runs at {} rpm", rpm(*mrpm)),
+        Change::Jogs { mrpm } => format!("jogs at {} rpm", rpm(*mrpm)),
+        Change::Stops => "stops".into(),
+        Change::Coasts => "runs out, the servo is off".into(),
+        Change::Stands { at } => format!("stands at {at}"),
+        Change::Ignored { action, why } => {
+            format!("{} ignored: {}", action.name(), why::ignored(*why))
+        }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();
             let name = terminals.map(|it| it.name(usize::from(*index))).unwrap_or_default();
             format!("terminal {name} {}", if *signal { "on" } else { "off" })
         }
     }
+}
+
+/// Thousandths of a revolution a minute in revolutions a minute.
+pub(super) fn rpm(mrpm: i64) -> f64 {
+    mrpm as f64 / 1000.0
 }

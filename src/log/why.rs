@@ -2,6 +2,7 @@
 
 use super::rows::label;
 use crate::drive::Drive;
+use crate::event::Ignored;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
@@ -41,6 +42,15 @@ pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
             }
         }
         (cause, detail) => format!("{cause:?} {detail:?}"),
+    }
+}
+
+/// Why an order did nothing.
+pub fn ignored(why: Ignored) -> &'static str {
+    match why {
+        Ignored::PowerOff => "the servo is off",
+        Ignored::Held => "a stop input is active",
+        Ignored::Moving => "the axis moves",
     }
 }
 

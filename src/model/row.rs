@@ -277,11 +277,15 @@ impl Kind {
         }
     }
 
+    /// The bits of `value`, without those that do not fit.
+    pub fn wrapped(self, value: i64) -> u32 {
+        if self.words() == 1 { value as u32 & 0xFFFF } else { value as u32 }
+    }
+
     /// The bits of `value`, clamped to what fits.
     pub fn raw(self, value: i64) -> u32 {
         let (low, high) = self.limits();
-        let bits = value.clamp(low, high) as u32;
-        if self.words() == 1 { bits & 0xFFFF } else { bits }
+        self.wrapped(value.clamp(low, high))
     }
 }
 
@@ -301,6 +305,8 @@ mod tests {
         assert_eq!(Kind::I32.value(0xFFFF_FFF6), -10);
         assert_eq!(Kind::U16.raw(70_000), 0xFFFF);
         assert_eq!(Kind::I16.raw(-70_000), 0x8000);
+        assert_eq!(Kind::I32.wrapped(0x8000_0000), 0x8000_0000);
+        assert_eq!(Kind::I16.wrapped(-70_000), 0xEE90);
     }
 
     #[test]

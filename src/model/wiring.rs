@@ -1,7 +1,10 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
+mod axis;
 mod compile;
 mod names;
+mod orders;
+mod quantities;
 mod used;
 
 pub(super) use compile::compile;
@@ -10,7 +13,7 @@ pub(super) use used::check_inert;
 use super::RowId;
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::words::{Action, AlarmCause, Input, Output, Quantity};
+use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting};
 
 /// What a model is wired to. Lists are in the order of the file, and short.
 #[derive(Debug, Default)]
@@ -23,6 +26,8 @@ pub struct Wiring {
     pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
     /// Rows in which a written value triggers an action.
     pub commands: Vec<Commands>,
+    /// Rows whose bits trigger actions.
+    pub triggers: Vec<Triggers>,
     /// Output terminals with the signal that each function number shows.
     pub output_terminals: Option<Terminals<Shown>>,
     /// What rows show, by row; `None` for a row that holds what was written.
@@ -33,6 +38,8 @@ pub struct Wiring {
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.
     pub servo: Servo,
+    /// The axis.
+    pub axis: Axis,
     /// Alarms by cause.
     pub alarms: Vec<Alarm>,
 }
@@ -141,6 +148,17 @@ pub struct Commands {
     pub actions: Vec<(i64, Action)>,
 }
 
+/// A row whose bits trigger actions.
+#[derive(Debug)]
+pub struct Triggers {
+    /// The row.
+    pub row: RowId,
+    /// Action by bit; of several bits that are set the first in here acts.
+    pub actions: Vec<(u8, Action)>,
+    /// Modifier by bit.
+    pub modifiers: Vec<(u8, Modifier)>,
+}
+
 /// What a write to a row sets off, apart from changing its value.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Reaction {
@@ -153,6 +171,8 @@ pub enum Reaction {
     InputWord(u16),
     /// Commands, by index.
     Command(u16),
+    /// Triggers, by index.
+    Trigger(u16),
     /// How the drive is reached: unit address, speed, format.
     Line,
 }
@@ -164,6 +184,41 @@ pub struct Servo {
     pub ready_after: Duration,
     /// Power stage on from the start.
     pub enabled_at_power_on: bool,
+}
+
+/// The axis that the drive moves.
+#[derive(Debug)]
+pub struct Axis {
+    /// Counts for one revolution.
+    pub counts_per_rev: Counts,
+    /// How long it runs out without power.
+    pub coast: Duration,
+    /// The rows that motions go by.
+    pub settings: Vec<(Setting, RowId)>,
+}
+
+/// Counts for one revolution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counts {
+    /// This many, not 0.
+    Fixed(u32),
+    /// As many as the row says, which can't hold 0.
+    Row(RowId),
+}
+
+impl Default for Axis {
+    /// Nothing moves it.
+    fn default() -> Self {
+        let coast = Duration::from_millis(200);
+        Self { counts_per_rev: Counts::Fixed(1), coast, settings: Vec::new() }
+    }
+}
+
+impl Axis {
+    /// The row that holds `setting`.
+    pub fn setting(&self, setting: Setting) -> Option<RowId> {
+        self.settings.iter().find(|(it, _)| *it == setting).map(|(_, row)| *row)
+    }
 }
 
 /// An alarm of the model.

@@ -183,6 +183,7 @@ impl Rig {
     }
 
     fn drain(&mut self) -> Vec<u8> {
+        self.bus.catch_up();
         let mut sent = Vec::new();
         while let Some(output) = self.bus.poll_output() {
             match output {

@@ -1,16 +1,44 @@
-//! What writing a value to a command row sets off.
+//! What a write to a command row sets off.
 
 use super::words;
 
 words! {
-    /// Something a drive does at once when told to.
+    /// Something a drive does at once when told to. Of several at once the one that stands first acts.
     Action {
+        QuickStop "quick_stop" "stand at once",
+        Stop "stop" "slow down to a standstill, with the deceleration that was read when the motion started",
+        MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set",
+        RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; ignored while the axis moves",
         Enable "enable" "switch the power stage on",
         Release "release" "switch the power stage off; it stays off until told otherwise",
         AlarmReset "alarm_reset" "clear an alarm whose cause is gone, if a reset can clear it",
         ClearPosition "clear_position" "call the present position 0",
-        StoreAll "store_all" "keep all values in force over power-off",
-        RestoreFactory "restore_factory" "put every value back as it left the factory",
+        StoreAll "store_all" "keep all values in force over power-off; ignored while the axis moves",
+        RestoreFactory "restore_factory" "put every value back as it left the factory; ignored while the axis moves",
         PowerCycle "power_cycle" "start anew, as if power had been off and on",
+    }
+}
+
+words! {
+    /// What a bit beside those that trigger says about the action.
+    Modifier {
+        Absolute "absolute" "`move.target` is a position, not a way",
+        Interrupt "interrupt" "a move takes the place of a motion under way",
+    }
+}
+
+/// The modifiers that came with an action.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Modifiers(u8);
+
+impl Modifiers {
+    /// Is `modifier` set?
+    pub fn has(self, modifier: Modifier) -> bool {
+        self.0 & (1 << modifier as u8) != 0
+    }
+
+    /// Sets `modifier`.
+    pub fn insert(&mut self, modifier: Modifier) {
+        self.0 |= 1 << modifier as u8;
     }
 }

@@ -8,13 +8,15 @@ mod alarm;
 mod cause;
 mod quantity;
 mod refusal;
+mod setting;
 mod signal;
 
-pub use action::Action;
+pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
 pub use cause::Cause;
 pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
+pub use setting::Setting;
 pub use signal::{Input, Inputs, Output, Outputs};
 
 /// A word with a name in files and a line of explanation: what the catalogue prints.

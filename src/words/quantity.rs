@@ -7,6 +7,7 @@ words! {
     /// A number with a dimension.
     Quantity {
         PositionActual "position.actual" "where the axis stands, in the drive's coordinate",
+        SpeedActual "speed.actual" "how fast the axis goes; negative in the negative direction",
         AlarmCode "alarm.code" "the vendor's number of the present alarm, 0 without one",
         UnitInUse "unit.in_use" "the unit address that the drive answers to",
         UnitSwitches "unit.switches" "the address switches as they are set",
@@ -18,6 +19,7 @@ impl Quantity {
     pub fn dimension(self) -> Dimension {
         match self {
             Self::PositionActual => Dimension::Position,
+            Self::SpeedActual => Dimension::Speed,
             Self::AlarmCode | Self::UnitInUse | Self::UnitSwitches => Dimension::None,
         }
     }

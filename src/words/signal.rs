@@ -8,6 +8,11 @@ words! {
         ServoOn "servo_on" "level: power stage on while active and no alarm stands against it",
         AlarmReset "alarm_reset" "rising edge: clear an alarm whose cause is gone, if a reset can clear it",
         AlarmForce "alarm_force" "level: the drive trips with alarm cause `forced`",
+        Release "release" "level: power stage off while active, whatever else asks for it",
+        Stop "stop" "level: the axis slows down to a standstill and starts nothing while active",
+        QuickStop "quick_stop" "level: the axis stands at once and starts nothing while active",
+        JogPos "jog_pos" "level: the axis goes at `jog.speed` while active; with `jog_neg` at the same time it stops",
+        JogNeg "jog_neg" "level: the same in the negative direction",
     }
 }
 
@@ -19,6 +24,9 @@ words! {
         Enabled "enabled" "power stage on",
         Alarm "alarm" "an alarm stands",
         BrakeOpen "brake_open" "the holding brake is released; follows `enabled`",
+        Moving "moving" "a motion is under way, from its start to the standstill",
+        InPosition "in_position" "the axis stands where its last move was to end; off from the start of any motion",
+        ZeroSpeed "zero_speed" "the speed is 0",
     }
 }
 

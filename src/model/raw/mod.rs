@@ -49,7 +49,7 @@ pub struct RawModel {
     /// One-word rows for every address of a span that no other row takes, by name of the area.
     #[serde(default)]
     pub fill: BTreeMap<String, RawFill>,
-    /// Numbers that the drive computes or reads, each with the row that holds it, by role.
+    /// Numbers that the drive computes or goes by, each with the row that holds it, by role.
     #[serde(default)]
     pub quantities: BTreeMap<String, String>,
     /// Where signals come from and where they show.
@@ -58,6 +58,8 @@ pub struct RawModel {
     /// When the drive is ready and what it does at power-on.
     #[serde(default)]
     pub servo: RawServo,
+    /// The axis, where something can move it.
+    pub axis: Option<RawAxis>,
     /// Alarms that the drive can raise, by cause.
     #[serde(default)]
     pub alarms: BTreeMap<String, RawAlarm>,
@@ -155,14 +157,17 @@ pub const KEYS: &[&str] = &[
     "applies",
     "assumed",
     "at",
+    "axis",
     "base",
     "baud",
     "bits",
     "choices",
     "clears",
+    "coast",
     "code",
     "codes",
     "commands",
+    "counts_per_rev",
     "crc_error",
     "default",
     "digit",
@@ -184,6 +189,7 @@ pub const KEYS: &[&str] = &[
     "max_read",
     "max_write",
     "model",
+    "modifiers",
     "monitor",
     "n",
     "name",
@@ -215,6 +221,7 @@ pub const KEYS: &[&str] = &[
     "switches",
     "terminals",
     "title",
+    "triggers",
     "type",
     "unit",
     "values",

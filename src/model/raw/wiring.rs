@@ -32,6 +32,19 @@ pub struct RawInputs {
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
     pub commands: BTreeMap<String, BTreeMap<i64, String>>,
+    /// Rows in which writing a 1 to a bit triggers an action. Every write triggers.
+    pub triggers: BTreeMap<String, RawTriggers>,
+}
+
+/// A row whose bits trigger actions.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawTriggers {
+    /// Bit -> action. Of several bits at once, the action that stands first in the catalogue acts alone.
+    pub bits: BTreeMap<u8, String>,
+    /// Bit -> what a 1 there says about the action.
+    #[serde(default)]
+    pub modifiers: BTreeMap<u8, String>,
 }
 
 /// Where output signals show.
@@ -139,6 +152,30 @@ pub struct RawServo {
     pub enabled_at_power_on: bool,
     /// What was assumed, and why.
     pub assumed: Option<String>,
+}
+
+/// The axis that the drive moves.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawAxis {
+    /// Counts of the drive for one revolution: a number, or the row that holds it.
+    pub counts_per_rev: RawCounts,
+    /// How long the axis runs out when its power stage goes off while it moves, from whatever speed
+    /// (`200ms`, which is the default); `0s` stands at once.
+    pub coast: Option<String>,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// Counts for one revolution.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(untagged, expecting = "a number of counts, or a row")]
+pub enum RawCounts {
+    /// This many.
+    Number(u32),
+    /// As many as the row says.
+    Row(String),
 }
 
 /// An alarm that the drive can raise.

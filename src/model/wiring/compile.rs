@@ -1,19 +1,16 @@
 //! Resolves the wiring of a file: names to rows, words to roles.
 
 use super::{
-    Alarm, Commands, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals,
-    Wiring,
+    Alarm, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals, Wiring,
 };
-use crate::model::RowId;
 use crate::model::raw::{
     RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
 };
 use crate::model::rows::Compiled;
 use crate::problem::{At, Path, Problem};
 use crate::time::Duration;
-use crate::units::{Dimension, Unit};
-use crate::words::{Action, AlarmCause, Input, Quantity, Word};
-use std::collections::BTreeMap;
+use crate::units::Dimension;
+use crate::words::{AlarmCause, Input, Word};
 
 pub(in crate::model) fn compile(
     raw: &RawModel,
@@ -33,6 +30,7 @@ pub(in crate::model) fn compile(
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
     wirer.line(&raw.line);
     wirer.servo(raw);
+    wirer.axis(raw.axis.as_ref());
     wirer.alarms(raw);
     wirer.wiring
 }
@@ -58,41 +56,6 @@ impl Wirer<'_> {
                 self.react(row, Reaction::Line, &path.key(key).key("register"), At::Value);
             }
         }
-    }
-
-    fn quantities(&mut self, raw: &BTreeMap<String, String>) {
-        let path = Path::root().key("quantities");
-        for (name, register) in raw {
-            let path = path.key(name);
-            let Some(quantity) = self.word_key::<Quantity>(name, "quantity", &path) else {
-                continue;
-            };
-            let Some(row) = self.row(register, &path) else { continue };
-            self.dimension(row, quantity, &path);
-            self.show(row, Shows::Quantity(quantity), &path, At::Value);
-        }
-    }
-
-    fn dimension(&mut self, row: RowId, quantity: Quantity, path: &Path) {
-        let (row, want) = (self.rows.map.row(row), quantity.dimension());
-        if row.unit.dimension == want {
-            return;
-        }
-        let (what, advice) = match want {
-            Dimension::None => ("is a plain number".to_owned(), "take the unit away".to_owned()),
-            _ => {
-                let symbols: Vec<_> = Unit::symbols_of(want).collect();
-                let what = format!("is in {}", symbols.join(" or "));
-                (what, format!("give the row `unit: {}`", symbols[0]))
-            }
-        };
-        let have = match row.unit_text.as_str() {
-            "" => "has no unit".to_owned(),
-            unit => format!("is in {unit}"),
-        };
-        let what = format!("`{}` {what}, but {} {have}", quantity.name(), row.id);
-        let advice = format!("{advice}, or wire another row");
-        self.problems.push(Problem::value(path.clone(), what).advise(advice));
     }
 
     fn inputs(&mut self, raw: &RawInputs, path: &Path) {
@@ -141,23 +104,8 @@ impl Wirer<'_> {
             self.react(row, Reaction::Inputs, &path, At::Key);
             self.wiring.input_bits.push((row, map));
         }
-        for (register, values) in &raw.commands {
-            let path = path.key("commands").key(register);
-            let Some(row) = self.row_key(register, &path) else { continue };
-            self.writable(row, &path, At::Key);
-            let mut actions = Vec::new();
-            for (value, name) in values {
-                let path = path.key(value);
-                if !self.rows.map.row(row).admits(*value) {
-                    let what = format!("{register} refuses the value {value}");
-                    self.problems.push(Problem::key(path.clone(), what));
-                }
-                actions.extend(self.word::<Action>(name, "action", &path).map(|it| (*value, it)));
-            }
-            let index = self.wiring.commands.len() as u16;
-            self.react(row, Reaction::Command(index), &path, At::Key);
-            self.wiring.commands.push(Commands { row, actions });
-        }
+        self.commands(&raw.commands, &path.key("commands"));
+        self.triggers(&raw.triggers, &path.key("triggers"));
     }
 
     fn outputs(&mut self, raw: &RawOutputs, path: &Path) {

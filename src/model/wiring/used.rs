@@ -1,5 +1,6 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
+use super::Counts;
 use super::{Reaction, Wiring};
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
@@ -48,6 +49,10 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     if let WordOrder::Row { row, .. } = line.word_order {
         mark(row);
     }
+    if let Counts::Row(row) = wiring.axis.counts_per_rev {
+        mark(row);
+    }
+    wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
     for (i, shows) in wiring.shows.iter().enumerate() {
         if shows.is_some() || wiring.reactions[i] != Reaction::None {
             mark(RowId(i as u16));

@@ -1,0 +1,251 @@
+//! What the axis is doing: it stands, moves to a position, runs, jogs, stops or coasts.
+//!
+//! An order becomes a trajectory and a phase; after that nothing happens until the trajectory ends, which
+//! is the only deadline. Speeds and slopes come with the order and hold until the next one, so a
+//! deceleration written during a motion counts from the next motion on.
+//!
+//! Deliberately absent: following error, limits, homing.
+
+use super::phase::{Phase, Stage};
+use crate::event::Ignored;
+use crate::motion::{Move, State, Trajectory};
+use crate::time::{Duration, Instant};
+
+/// A speed and how to get to it and from it; counts per second, the sign is the direction, and counts per
+/// second squared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    /// Where to.
+    pub speed: f64,
+    /// Getting faster.
+    pub accel: f64,
+    /// Getting slower.
+    pub decel: f64,
+}
+
+/// What the levels ask for right now.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Wants {
+    /// Power stage on?
+    pub power: bool,
+    /// Stand, after a ramp.
+    pub stop: bool,
+    /// Stand at once.
+    pub quick_stop: bool,
+    /// Jog; `None` for neither direction, or both.
+    pub jog: Option<Ramp>,
+}
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motor {
+    trajectory: Trajectory,
+    phase: Phase,
+    /// Slope of a stop, from the order that started the motion.
+    decel: f64,
+    /// How long it runs out without power.
+    coast: Duration,
+    power: bool,
+    /// A level holds it still.
+    held: bool,
+    /// An order ended the jog; its level must go before it acts again.
+    jog_spent: bool,
+    in_position: bool,
+}
+
+impl Motor {
+    /// Standing at `position`, without power.
+    pub fn standing(now: Instant, position: f64, coast: Duration) -> Self {
+        Self {
+            trajectory: Trajectory::rest(now, position),
+            phase: Phase::Standing,
+            decel: 0.0,
+            coast,
+            power: false,
+            held: false,
+            jog_spent: false,
+            in_position: false,
+        }
+    }
+
+    /// The last whole count reached, in the machine's coordinate.
+    pub fn position(&self, now: Instant) -> i64 {
+        self.trajectory.position(now)
+    }
+
+    /// Counts per second.
+    pub fn speed(&self, now: Instant) -> f64 {
+        self.trajectory.speed(now)
+    }
+
+    /// Position and speed as they are, not in whole counts.
+    pub fn state(&self, now: Instant) -> State {
+        self.trajectory.state(now)
+    }
+
+    /// Is a motion under way?
+    pub fn is_moving(&self) -> bool {
+        self.phase != Phase::Standing
+    }
+
+    /// Does it stand where its last move was to end?
+    pub fn is_in_position(&self) -> bool {
+        self.in_position
+    }
+
+    /// When the motion ends by itself.
+    pub fn deadline(&self) -> Option<Instant> {
+        self.trajectory.end().filter(|_| self.is_moving())
+    }
+
+    /// Lets time pass up to `now`, which is not later than the deadline.
+    pub fn advance(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        if self.deadline().is_some_and(|end| end <= now) {
+            self.in_position = self.phase == Phase::Moving;
+            self.phase = Phase::Standing;
+            tell(Stage::Stands(self.position(now)));
+        }
+    }
+
+    /// Follows the levels. To be called whenever one of them may have changed, or a motion has ended.
+    pub fn follow(&mut self, now: Instant, wants: Wants, tell: &mut impl FnMut(Stage)) {
+        self.power = wants.power;
+        self.held = wants.stop || wants.quick_stop;
+        self.jog_spent &= wants.jog.is_some();
+        if !wants.power {
+            return self.coast(now, tell);
+        }
+        if wants.quick_stop {
+            self.halt(now, tell);
+        } else if wants.stop {
+            self.brake(now, tell);
+        }
+        match wants.jog {
+            None if matches!(self.phase, Phase::Jogging { .. }) => self.brake(now, tell),
+            None => {}
+            Some(ramp) => self.jog(now, ramp, tell),
+        }
+    }
+
+    /// Goes to `target`, given where it is.
+    ///
+    /// # Errors
+    /// Why it does not start: without power, while held, or while it moves and may not `interrupt`.
+    pub fn start_move(
+        &mut self,
+        now: Instant,
+        target: impl FnOnce(i64) -> i64,
+        how: Move,
+        interrupt: bool,
+        tell: &mut impl FnMut(Stage),
+    ) -> Result<(), Ignored> {
+        self.may_start(interrupt)?;
+        let target = target(self.position(now));
+        let trajectory = Trajectory::to_position(now, self.state(now), target, how);
+        self.decel = how.decel;
+        self.begin(now, trajectory, Phase::Moving, Stage::Moves(target), tell);
+        Ok(())
+    }
+
+    /// Goes at a speed until stopped.
+    ///
+    /// # Errors
+    /// Why it does not start: without power, while held, or while it moves.
+    pub fn start_run(
+        &mut self,
+        now: Instant,
+        ramp: Ramp,
+        tell: &mut impl FnMut(Stage),
+    ) -> Result<(), Ignored> {
+        self.may_start(false)?;
+        self.go(now, ramp, Phase::Running, Stage::Runs(ramp.speed), tell);
+        Ok(())
+    }
+
+    /// Slows down to a standstill.
+    pub fn stop(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        self.jog_spent = true;
+        self.brake(now, tell);
+    }
+
+    /// Stands at once.
+    pub fn quick_stop(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        self.jog_spent = true;
+        self.halt(now, tell);
+    }
+
+    fn may_start(&self, interrupt: bool) -> Result<(), Ignored> {
+        match () {
+            () if !self.power => Err(Ignored::PowerOff),
+            () if self.held => Err(Ignored::Held),
+            () if self.is_moving() && !interrupt => Err(Ignored::Moving),
+            () => Ok(()),
+        }
+    }
+
+    fn jog(&mut self, now: Instant, ramp: Ramp, tell: &mut impl FnMut(Stage)) {
+        let forward = ramp.speed >= 0.0;
+        let free = match self.phase {
+            Phase::Standing | Phase::Stopping | Phase::Coasting => true,
+            Phase::Jogging { forward: now } => now != forward,
+            Phase::Moving | Phase::Running => false,
+        };
+        if free && !self.held && !self.jog_spent {
+            self.go(now, ramp, Phase::Jogging { forward }, Stage::Jogs(ramp.speed), tell);
+        }
+    }
+
+    fn go(
+        &mut self,
+        now: Instant,
+        ramp: Ramp,
+        phase: Phase,
+        stage: Stage,
+        tell: &mut impl FnMut(Stage),
+    ) {
+        let Ramp { speed, accel, decel } = ramp;
+        let trajectory = Trajectory::to_speed(now, self.state(now), speed, accel, decel);
+        self.decel = decel;
+        self.begin(now, trajectory, phase, stage, tell);
+    }
+
+    fn brake(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        if matches!(self.phase, Phase::Moving | Phase::Running | Phase::Jogging { .. }) {
+            let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+            self.begin(now, trajectory, Phase::Stopping, Stage::Stops, tell);
+        }
+    }
+
+    fn halt(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        if self.power && self.is_moving() {
+            let trajectory = Trajectory::halt(now, self.state(now));
+            self.begin(now, trajectory, Phase::Stopping, Stage::Stops, tell);
+        }
+    }
+
+    fn coast(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+        if self.is_moving() && self.phase != Phase::Coasting {
+            let trajectory = Trajectory::coast(now, self.state(now), self.coast);
+            self.begin(now, trajectory, Phase::Coasting, Stage::Coasts, tell);
+        }
+    }
+
+    fn begin(
+        &mut self,
+        now: Instant,
+        trajectory: Trajectory,
+        phase: Phase,
+        stage: Stage,
+        tell: &mut impl FnMut(Stage),
+    ) {
+        // An order takes the place of a jog for good: its level may still be there when the order is done.
+        self.jog_spent |= matches!(self.phase, Phase::Jogging { .. }) && phase == Phase::Moving;
+        (self.trajectory, self.phase, self.in_position) = (trajectory, phase, false);
+        tell(stage);
+        // What takes no time is over.
+        self.advance(now, tell);
+    }
+}
+
+#[cfg(test)]
+mod tests;

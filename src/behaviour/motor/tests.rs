@@ -1,0 +1,192 @@
+//! What holds for an axis whatever it is told.
+
+use super::*;
+use proptest::prelude::*;
+
+const HOW: Move = Move { start_speed: 0.0, speed: 4000.0, accel: 20_000.0, decel: 10_000.0 };
+const COAST: Duration = Duration::from_millis(200);
+
+/// Something that happens to an axis.
+#[derive(Debug, Clone, Copy)]
+enum Order {
+    Follow { power: bool, stop: bool, quick_stop: bool, jog: i8 },
+    Move { target: i64, interrupt: bool },
+    Run { speed: f64 },
+    Stop,
+    QuickStop,
+}
+
+fn ramp(speed: f64) -> Ramp {
+    Ramp { speed, accel: HOW.accel, decel: HOW.decel }
+}
+
+/// Orders with the milliseconds before each; where `gentle`, none that changes the speed at once.
+fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, Order)>> {
+    let level = (prop::bool::weighted(0.8), prop::bool::weighted(0.2), any::<bool>(), -1..2i8);
+    let follow = level.prop_map(move |(power, stop, quick_stop, jog)| {
+        let quick_stop = quick_stop && stop && !gentle;
+        Order::Follow { power, stop, quick_stop, jog }
+    });
+    let order = prop_oneof![
+        4 => follow,
+        3 => (-3000i64..3000, any::<bool>()).prop_map(|(target, interrupt)| Order::Move { target, interrupt }),
+        2 => (-4000.0..4000.0).prop_map(|speed| Order::Run { speed }),
+        1 => Just(Order::Stop),
+        1 => Just(if gentle { Order::Stop } else { Order::QuickStop }),
+    ];
+    prop::collection::vec((0u64..900, order), 1..25)
+}
+
+/// An axis with a clock, as a drive keeps it.
+struct Bench {
+    motor: Motor,
+    wants: Wants,
+    now: Instant,
+    told: Vec<(Instant, Stage)>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let motor = Motor::standing(Instant::ZERO, 0.0, COAST);
+        let wants = Wants { power: true, ..Wants::default() };
+        let mut bench = Self { motor, wants, now: Instant::ZERO, told: Vec::new() };
+        bench.follow();
+        bench
+    }
+
+    fn follow(&mut self) {
+        let (now, told) = (self.now, &mut self.told);
+        self.motor.follow(now, self.wants, &mut |stage| told.push((now, stage)));
+    }
+
+    fn advance_to(&mut self, now: Instant) {
+        while let Some(at) = self.motor.deadline().filter(|at| *at <= now) {
+            self.now = at;
+            let told = &mut self.told;
+            self.motor.advance(at, &mut |stage| told.push((at, stage)));
+            self.follow();
+        }
+        self.now = now;
+    }
+
+    fn obey(&mut self, order: Order) {
+        let (now, told) = (self.now, &mut self.told);
+        let tell = &mut |stage| told.push((now, stage));
+        // Whether it may start is another test's.
+        let _ = match order {
+            Order::Follow { power, stop, quick_stop, jog } => {
+                let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
+                self.wants = Wants { power, stop, quick_stop, jog };
+                Ok(())
+            }
+            Order::Move { target, interrupt } => {
+                self.motor.start_move(now, |here| here + target, HOW, interrupt, tell)
+            }
+            Order::Run { speed } => self.motor.start_run(now, ramp(speed), tell),
+            Order::Stop => {
+                self.motor.stop(now, tell);
+                Ok(())
+            }
+            Order::QuickStop => {
+                self.motor.quick_stop(now, tell);
+                Ok(())
+            }
+        };
+        self.follow();
+    }
+}
+
+/// The whole story, looked at every so many milliseconds.
+fn play(orders: &[(u64, Order)], step_ms: u64, mut look: impl FnMut(&Bench)) -> Bench {
+    let mut bench = Bench::new();
+    let mut ms = 0;
+    let end = (3000, Order::Stop);
+    for (wait, order) in orders.iter().chain([&end]) {
+        let until = ms + wait;
+        while ms < until {
+            ms = (ms + step_ms).min(until);
+            bench.advance_to(Instant::from_millis(ms));
+            look(&bench);
+        }
+        bench.obey(*order);
+        look(&bench);
+    }
+    bench
+}
+
+proptest! {
+    #[test]
+    fn slices_of_time_make_no_difference(orders in orders(false), step in 1u64..50) {
+        let (seldom, often) = (play(&orders, u64::MAX / 2, |_| {}), play(&orders, step, |_| {}));
+        prop_assert_eq!(seldom.told, often.told);
+        prop_assert_eq!(seldom.motor, often.motor);
+    }
+
+    #[test]
+    fn it_goes_nowhere_without_passing_what_lies_between(orders in orders(false)) {
+        let mut last: Option<(Instant, State)> = None;
+        let mut worst = 0.0f64;
+        play(&orders, 1, |bench| {
+            let state = bench.motor.state(bench.now);
+            if let Some((at, was)) = last {
+                let most = 4000.0 * bench.now.since(at).as_secs_f64();
+                worst = worst.max((state.position - was.position).abs() - most);
+            }
+            worst = worst.max(state.speed.abs() - 4000.0);
+            last = Some((bench.now, state));
+        });
+        prop_assert!(worst < 1e-5, "{}", worst);
+    }
+
+    #[test]
+    fn the_speed_keeps_to_its_ramps(orders in orders(true)) {
+        let mut last: Option<(Instant, f64)> = None;
+        let mut worst = 0.0f64;
+        play(&orders, 1, |bench| {
+            let speed = bench.motor.speed(bench.now);
+            if let Some((at, was)) = last {
+                // To coast takes 200 ms from whatever speed, which is no steeper than the ramps here.
+                worst = worst.max((speed - was).abs() - 20_000.0 * bench.now.since(at).as_secs_f64());
+            }
+            last = Some((bench.now, speed));
+        });
+        prop_assert!(worst < 1e-5, "{}", worst);
+    }
+
+    #[test]
+    fn without_power_or_held_it_comes_to_rest(orders in orders(false), held: bool) {
+        let mut bench = play(&orders, u64::MAX / 2, |_| {});
+        bench.obey(Order::Follow { power: held, stop: held, quick_stop: false, jog: 1 });
+        let at = bench.now + Duration::from_millis(500);
+        bench.advance_to(at);
+        prop_assert!(!bench.motor.is_moving());
+        let (place, told) = (bench.motor.state(at), bench.told.len());
+        for (wait, order) in orders {
+            bench.advance_to(bench.now + Duration::from_millis(wait));
+            if !matches!(order, Order::Follow { .. }) {
+                bench.obey(order);
+            }
+        }
+        prop_assert_eq!(bench.motor.state(bench.now), place);
+        prop_assert_eq!(bench.told.len(), told);
+    }
+}
+
+#[test]
+fn says_why_it_does_not_start() {
+    let start = |wants: Wants, running: bool| {
+        let mut bench = Bench::new();
+        if running {
+            bench.obey(Order::Run { speed: 1000.0 });
+        }
+        bench.wants = wants;
+        bench.follow();
+        bench.motor.start_run(bench.now, ramp(5.0), &mut |_| {})
+    };
+    let ready = Wants { power: true, ..Wants::default() };
+    assert_eq!(start(ready, false), Ok(()));
+    assert_eq!(start(ready, true), Err(Ignored::Moving));
+    assert_eq!(start(Wants { stop: true, ..ready }, false), Err(Ignored::Held));
+    assert_eq!(start(Wants { quick_stop: true, ..ready }, true), Err(Ignored::Held));
+    assert_eq!(start(Wants { power: false, stop: true, ..ready }, true), Err(Ignored::PowerOff));
+}

@@ -1,0 +1,175 @@
+//! The axis, and whether what is wired to it goes together: what starts a motion has the numbers it needs,
+//! and what changes nothing is told of.
+
+use super::Counts;
+use super::compile::Wirer;
+use crate::model::raw::{RawAxis, RawCounts};
+use crate::problem::{Path, Problem};
+use crate::units::Dimension;
+use crate::words::{Action, Input, Output, Quantity, Setting, Word};
+
+/// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
+struct Kind {
+    name: &'static str,
+    inputs: &'static [Input],
+    action: Option<Action>,
+    needs: &'static [Setting],
+    takes: &'static [Setting],
+}
+
+const KINDS: [Kind; 3] = [
+    Kind {
+        name: "run",
+        inputs: &[],
+        action: Some(Action::RunStart),
+        needs: &[Setting::RunSpeed],
+        takes: &[Setting::RunAccel, Setting::RunDecel],
+    },
+    Kind {
+        name: "jog",
+        inputs: &[Input::JogPos, Input::JogNeg],
+        action: None,
+        needs: &[Setting::JogSpeed],
+        takes: &[Setting::JogAccel, Setting::JogDecel],
+    },
+    Kind {
+        name: "move",
+        inputs: &[],
+        action: Some(Action::MoveStart),
+        needs: &[Setting::MoveTarget, Setting::MoveSpeed],
+        takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
+    },
+];
+
+impl Wirer<'_> {
+    pub(super) fn axis(&mut self, raw: Option<&RawAxis>) {
+        let path = Path::root().key("axis");
+        let (inputs, actions) = (self.inputs_wired(), self.actions_wired());
+        let mut starter: Option<&str> = None;
+        for kind in &KINDS {
+            let by_input = kind.inputs.iter().find(|it| inputs.contains(it)).map(|it| it.name());
+            let by_action = kind.action.filter(|it| actions.contains(it)).map(Word::name);
+            let by = by_input.or(by_action);
+            self.settings_fit(kind, by);
+            starter = starter.or(by);
+        }
+        match (raw, starter) {
+            (None, Some(starter)) => {
+                let what = format!("`{starter}` moves an axis, and there is no `axis`");
+                let problem = Problem::key(Path::root().key("signals"), what);
+                self.problems
+                    .push(problem.advise("add `axis: {counts_per_rev: N}`, or a row for N"));
+            }
+            (Some(_), None) => self.without_motion("axis", &path),
+            _ => {}
+        }
+        if starter.is_none() {
+            self.signals_without_motion(&inputs, &actions);
+        }
+        let Some(raw) = raw else { return };
+        if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
+            self.wiring.axis.counts_per_rev = counts;
+        }
+        if let Some(coast) = self.duration(raw.coast.as_deref(), &path.key("coast")) {
+            self.wiring.axis.coast = coast;
+        }
+    }
+
+    fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
+        let row = match raw {
+            RawCounts::Number(0) => {
+                let what = "a revolution has at least one count";
+                self.problems.push(Problem::value(path.clone(), what));
+                return None;
+            }
+            RawCounts::Number(number) => return Some(Counts::Fixed(*number)),
+            RawCounts::Row(register) => self.row(register, path)?,
+        };
+        let it = self.rows.map.row(row);
+        if it.unit.dimension != Dimension::Resolution {
+            let what = format!("{} must hold counts of a revolution", it.id);
+            let problem = Problem::value(path.clone(), what);
+            self.problems.push(problem.advise("give the row `unit: counts/rev`"));
+        }
+        if it.spans.iter().any(|(low, _)| *low <= 0) {
+            let what = format!("{} may hold 0, and a revolution has at least one count", it.id);
+            let problem = Problem::value(path.clone(), what);
+            self.problems.push(problem.advise("give the row a `range` from 1 on"));
+        }
+        Some(Counts::Row(row))
+    }
+
+    /// A motion that something starts has the settings it needs; one that nothing starts has none.
+    fn settings_fit(&mut self, kind: &Kind, by: Option<&str>) {
+        let path = Path::root().key("quantities");
+        for setting in kind.needs.iter().chain(kind.takes) {
+            let wired = self.wiring.axis.setting(*setting).is_some();
+            let name = setting.name();
+            match by {
+                Some(by) if !wired && kind.needs.contains(setting) => {
+                    let what = format!("`{by}` is wired, but no row holds `{name}`");
+                    let advice = format!("add `{name}: ROW` to `quantities`");
+                    self.problems
+                        .push(Problem::key(Path::root().key("signals"), what).advise(advice));
+                }
+                None if wired => {
+                    let what = format!("`{name}` changes nothing: nothing starts a {}", kind.name);
+                    self.problems.push(
+                        Problem::key(path.key(name), what)
+                            .advise("wire what starts it, or leave it out"),
+                    );
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// What ends or shows a motion, where there is none.
+    fn signals_without_motion(&mut self, inputs: &[Input], actions: &[Action]) {
+        let path = Path::root().key("signals");
+        let ends = [Input::Stop, Input::QuickStop].into_iter().filter(|it| inputs.contains(it));
+        let orders = [Action::Stop, Action::QuickStop].into_iter();
+        let orders = orders.filter(|it| actions.contains(it)).map(Word::name);
+        let outputs = [Output::Moving, Output::InPosition, Output::ZeroSpeed].into_iter();
+        let shown = outputs.filter(|it| self.is_shown(*it)).map(Word::name);
+        let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
+        names.into_iter().for_each(|name| self.without_motion(name, &path));
+        let speed = super::Shows::Quantity(Quantity::SpeedActual);
+        if self.wiring.shows.iter().flatten().any(|it| *it == speed) {
+            let name = Quantity::SpeedActual.name();
+            self.without_motion(name, &Path::root().key("quantities").key(name));
+        }
+    }
+
+    fn without_motion(&mut self, name: &str, path: &Path) {
+        let what = format!("`{name}` changes nothing: nothing starts a motion");
+        let advice = "wire what starts it, or leave it out";
+        self.problems.push(Problem::key(path.clone(), what).advise(advice));
+    }
+
+    fn inputs_wired(&self) -> Vec<Input> {
+        let wiring = &self.wiring;
+        let terminals = wiring.input_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
+        let words = wiring.input_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
+        let bits = wiring.input_bits.iter().flat_map(|(_, bits)| bits).map(|it| it.1);
+        terminals.chain(words).chain(bits).collect()
+    }
+
+    fn actions_wired(&self) -> Vec<Action> {
+        let commands = self.wiring.commands.iter().flat_map(|it| &it.actions).map(|it| it.1);
+        let triggers = self.wiring.triggers.iter().flat_map(|it| &it.actions).map(|it| it.1);
+        commands.chain(triggers).collect()
+    }
+
+    fn is_shown(&self, output: Output) -> bool {
+        let wiring = &self.wiring;
+        let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
+        let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
+        let bits = wiring.shows.iter().flatten().filter_map(|it| match it {
+            super::Shows::Bits(bits) => Some(bits),
+            _ => None,
+        });
+        let bits = bits.flatten().map(|it| it.1);
+        terminals.chain(words).chain(bits).any(|it| it.signal == output)
+    }
+}

@@ -1,0 +1,241 @@
+//! Following error: the feedback runs behind the command by a first-order delay.
+//!
+//! A position controller with gain `K` (1/s) moves the axis at `K` times its deviation, so the deviation
+//! obeys `d' = v - K d`: it tends to `v / K` and decays when the command rests. For constant
+//! acceleration that has a closed form, applied segment by segment.
+
+use super::trajectory::Segment;
+use super::{State, Trajectory, search};
+use crate::time::{Duration, Instant};
+
+/// How far the feedback is behind the trajectory that it belongs to. Goes with each new trajectory by
+/// [`Lag::carried`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lag {
+    /// Position gain, 1/s; `None` follows without delay.
+    gain: Option<f64>,
+    /// Counts at the beginning of the trajectory.
+    deviation: f64,
+}
+
+impl Lag {
+    /// Feedback that is the command.
+    pub const NONE: Self = Self { gain: None, deviation: 0.0 };
+
+    /// Position gain in 1/s, no deviation yet. A gain that is zero or infinite follows without delay.
+    pub fn new(gain: f64) -> Self {
+        // Below 0.01/s, a time constant of minutes, the closed form would drown in rounding.
+        Self { gain: (gain > 0.0 && gain.is_finite()).then(|| gain.max(0.01)), deviation: 0.0 }
+    }
+
+    /// The lag of the trajectory that replaces `old` at `now`: the deviation does not jump.
+    #[must_use]
+    pub fn carried(self, old: &Trajectory, now: Instant) -> Self {
+        Self { deviation: self.deviation(old, now), ..self }
+    }
+
+    /// With another gain from the beginning of the trajectory on.
+    #[must_use]
+    pub fn with_gain(self, gain: f64) -> Self {
+        let new = Self::new(gain);
+        Self { deviation: if new.gain.is_some() { self.deviation } else { 0.0 }, ..new }
+    }
+
+    /// Command less feedback at `at`, in counts.
+    pub fn deviation(&self, trajectory: &Trajectory, at: Instant) -> f64 {
+        let Some(gain) = self.gain else { return 0.0 };
+        let t = trajectory.seconds(at);
+        let mut deviation = self.deviation;
+        for (segment, until) in trajectory.spans() {
+            if t <= segment.from {
+                return deviation;
+            }
+            deviation = behind(gain, deviation, segment, until.min(t) - segment.from);
+        }
+        let rested = trajectory.end.map_or(0.0, |end| t - trajectory.seconds(end));
+        deviation * (-gain * rested.max(0.0)).exp()
+    }
+
+    /// Where the axis really is at `at`, and how fast.
+    pub fn feedback(&self, trajectory: &Trajectory, at: Instant) -> State {
+        let command = trajectory.state(at);
+        let Some(gain) = self.gain else { return command };
+        let deviation = self.deviation(trajectory, at);
+        State { position: command.position - deviation, speed: gain * deviation }
+    }
+
+    /// The feedback in whole counts: the command's, less the deviation rounded to the nearest. Rounded
+    /// down it would show one count less until the decay is over, which takes for ever.
+    pub fn position(&self, trajectory: &Trajectory, at: Instant) -> i64 {
+        trajectory.position(at).saturating_sub(self.deviation(trajectory, at).round() as i64)
+    }
+
+    /// When the command rests and the deviation is within `window` counts from then on; `None` if the
+    /// command never rests. A window below half a count is half a count, which shows as zero.
+    pub fn settles_at(&self, trajectory: &Trajectory, window: f64) -> Option<Instant> {
+        let end = trajectory.end()?;
+        let window = window.max(0.5);
+        let left = self.deviation(trajectory, end).abs();
+        let Some(gain) = self.gain.filter(|_| left > window) else { return Some(end) };
+        let at = end + Duration::from_nanos(((left / window).ln() / gain * 1e9).ceil() as u64);
+        // The logarithm may be a rounding error short.
+        let late =
+            |ns: &u64| self.deviation(trajectory, at + Duration::from_nanos(*ns)).abs() > window;
+        let ns = (0..4).take_while(late).count() as u64;
+        Some(at + Duration::from_nanos(ns))
+    }
+
+    /// The first instant after `after` at which the deviation gets beyond `limit` counts, either way.
+    pub fn exceeds_at(&self, of: &Trajectory, limit: f64, after: Instant) -> Option<Instant> {
+        // Each side for itself: in one sweep it may leave one limit and get beyond the other.
+        let beyond = |sign: f64| {
+            let exceeds = |at| self.deviation(of, at) * sign > limit;
+            search::first(after, self.turns(of), exceeds, |()| after)
+        };
+        [beyond(1.0), beyond(-1.0)].into_iter().flatten().min()
+    }
+
+    /// Instants between which the deviation is monotone.
+    fn turns(&self, of: &Trajectory) -> impl Iterator<Item = (Instant, ())> {
+        let mut deviation = self.deviation;
+        let spans = self.gain.into_iter().flat_map(|gain| of.spans().map(move |it| (gain, it)));
+        spans.flat_map(move |(gain, (segment, until))| {
+            // What would turn after the segment is over does not.
+            let turn = (segment.from + turn(gain, deviation, segment)).min(until);
+            deviation = behind(gain, deviation, segment, until - segment.from);
+            [turn, until].map(|t| (of.instant(t), ()))
+        })
+    }
+}
+
+/// The deviation `x` seconds into `segment`, which it enters with `deviation`.
+fn behind(gain: f64, deviation: f64, segment: &Segment, x: f64) -> f64 {
+    if x.is_infinite() {
+        // Only the last segment of an endless trajectory, which has no acceleration.
+        return segment.start.speed / gain;
+    }
+    // What a rounding error left over may start after the end, which is on a whole nanosecond.
+    let x = x.max(0.0);
+    // The share of the way to the new balance, and what of the time went into growth.
+    let share = -(-gain * x).exp_m1();
+    let lagged = share / gain;
+    deviation * (1.0 - share) + segment.start.speed * lagged + segment.accel * (x - lagged) / gain
+}
+
+/// Seconds into `segment` at which the deviation turns round; zero if it does not.
+fn turn(gain: f64, deviation: f64, segment: &Segment) -> f64 {
+    // d = steady + growth * x + rest * exp(-K x); its slope is zero where exp(-K x) = growth / (K rest).
+    let growth = segment.accel / gain;
+    let rest = deviation - segment.start.speed / gain + growth / gain;
+    let ratio = gain * rest / growth;
+    if ratio > 1.0 { ratio.ln() / gain } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Way;
+    use crate::motion::tests::{instants, trajectories};
+    use proptest::prelude::*;
+
+    #[test]
+    fn at_speed_it_is_speed_by_gain() {
+        let of = Trajectory::to_speed(Instant::ZERO, State::at_rest(0.0), 2000.0, 1e4, 1e4);
+        let lag = Lag::new(40.0);
+        let late = Instant::from_millis(3_600_000);
+        assert_eq!(lag.deviation(&of, Instant::ZERO), 0.0);
+        assert!((lag.deviation(&of, late) - 50.0).abs() < 1e-9);
+        assert!((lag.feedback(&of, late).speed - 2000.0).abs() < 1e-6);
+        assert_eq!(lag.settles_at(&of, 5.0), None);
+        assert_eq!(lag.position(&of, late), of.position(late) - 50);
+        // It grows up to that and never beyond.
+        assert_eq!(lag.exceeds_at(&of, 50.1, Instant::ZERO), None);
+        let at = lag.exceeds_at(&of, 49.0, Instant::ZERO).expect("on the way");
+        assert!(at > Instant::from_millis(200) && at < Instant::from_millis(400), "{at}");
+    }
+
+    #[test]
+    fn settles_by_a_logarithm() {
+        let from = State { position: 0.0, speed: 1000.0 };
+        let running = Trajectory::to_speed(Instant::ZERO, from, 1000.0, 1e4, 1e4);
+        let now = Instant::from_millis(10_000);
+        let of = Trajectory::halt(now, running.state(now));
+        let lag = Lag::new(50.0).carried(&running, now);
+        // 20 counts behind; a tenth is left after ln(10) / 50 s.
+        let at = lag.settles_at(&of, 2.0).expect("it settles");
+        assert!((at.since(now).as_secs_f64() - 10f64.ln() / 50.0).abs() < 1e-8);
+        assert_eq!(lag.position(&of, now), of.position(now) - 20);
+        assert_eq!(lag.position(&of, now + Duration::from_secs(1)), of.position(now));
+        assert_eq!(lag.settles_at(&of, 25.0), Some(now));
+        assert_eq!(Lag::NONE.settles_at(&of, 0.0), Some(now));
+        assert_eq!(Lag::new(f64::INFINITY).feedback(&running, now), running.state(now));
+    }
+
+    proptest! {
+        #[test]
+        fn obeys_its_equation(of in trajectories(), gain in 1.0..500.0, start in -100.0..100.0) {
+            let lag = Lag { deviation: start, ..Lag::new(gain) };
+            // Not across the seams, where the slope of the deviation changes.
+            let seams: Vec<_> = of.spans().flat_map(|(it, until)| [it.from, until]).collect();
+            for pair in instants(&of, 200).windows(2) {
+                let (a, b) = (of.seconds(pair[0]), of.seconds(pair[1]));
+                if seams.iter().any(|it| a - 1e-6 < *it && *it < b + 1e-6) || b - a < 1e-5 {
+                    continue;
+                }
+                let (middle, h) = ((a + b) / 2.0, 1e-6);
+                let d = |t| lag.deviation(&of, of.instant(t));
+                let got = (d(middle + h) - d(middle - h)) / (2.0 * h);
+                let want = of.speed(of.instant(middle)) - gain * d(middle);
+                // What a difference quotient over rounded instants is worth.
+                prop_assert!((got - want).abs() < 1e-2 * (1.0 + want.abs()), "{} {}", got, want);
+            }
+        }
+
+        #[test]
+        fn does_not_jump(of in trajectories(), gain in 1.0..500.0, start in -100.0..100.0) {
+            let lag = Lag { deviation: start, ..Lag::new(gain) };
+            for pair in instants(&of, 100).windows(2) {
+                let most = 30_000.0 + gain * (30_000.0 / gain + 100.0);
+                let change = lag.deviation(&of, pair[1]) - lag.deviation(&of, pair[0]);
+                prop_assert!(change.abs() <= most * pair[1].since(pair[0]).as_secs_f64() + 1e-6);
+            }
+        }
+
+        #[test]
+        fn carried_it_goes_on(of in trajectories(), gain in 1.0..500.0, part in 0.0..1.0) {
+            let lag = Lag::new(gain);
+            let all = instants(&of, 100);
+            let now = all[(part * 99.0) as usize];
+            let next = Trajectory::halt(now, of.state(now));
+            let carried = lag.carried(&of, now);
+            prop_assert_eq!(carried.deviation(&next, now), lag.deviation(&of, now));
+            let window = 0.7;
+            let at = carried.settles_at(&next, window).expect("it settles");
+            prop_assert!(carried.deviation(&next, at).abs() <= window);
+            let before = at - Duration::from_nanos(2);
+            prop_assert!(at == now || carried.deviation(&next, before).abs() > window);
+        }
+
+        #[test]
+        fn exceeds_as_looking_does(
+            of in trajectories(), gain in 1.0..500.0, start in -100.0..100.0, limit in 0.0..500.0,
+        ) {
+            let lag = Lag { deviation: start, ..Lag::new(gain) };
+            let beyond = |at| Way::Rising.is_past(lag.deviation(&of, at).abs(), limit);
+            let found = lag.exceeds_at(&of, limit, of.begin);
+            let mut was = beyond(of.begin);
+            for at in instants(&of, 500) {
+                if found.is_some_and(|it| it <= at) {
+                    break;
+                }
+                let is = beyond(at);
+                // Grazing the limit may fall between two nanoseconds.
+                prop_assert!(was || !is || lag.deviation(&of, at).abs() < limit + 1e-4, "{:?} {:?}", at, found);
+                was = is;
+            }
+            if let Some(at) = found {
+                prop_assert!(beyond(at) && !beyond(at - Duration::from_nanos(1)));
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! A trajectory: pieces of constant acceleration, and what they say about an instant.
+//!
+//! Made in `plan.rs`, only read here. It relies on two things that plans promise:
+//! in no segment does the speed change its sign, and the first segment starts at the beginning.
+
+use super::State;
+use crate::time::{Duration, Instant};
+
+/// A move in the worst case: brake, speed up, cruise, slow down.
+pub(super) const MOST_SEGMENTS: usize = 4;
+
+/// Nearer than this to a whole count is on it. Sums of ramps are a few 1e-10 off; without this an axis
+/// that stopped at 5000 would show 4999 now and then, with its switches to match.
+pub(super) const SNAP: f64 = 1e-6;
+
+/// Constant acceleration until the next segment or the end.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Segment {
+    /// Seconds since the trajectory began.
+    pub(super) from: f64,
+    /// The state there.
+    pub(super) start: State,
+    /// Counts per second squared, signed.
+    pub(super) accel: f64,
+}
+
+impl Segment {
+    /// The state `t` seconds after the trajectory began.
+    fn state(&self, t: f64) -> State {
+        let State { position, speed } = self.start;
+        let x = t - self.from;
+        let now = speed + self.accel * x;
+        State {
+            position: snap(position + (speed + 0.5 * self.accel * x) * x),
+            // Rounding must not turn the last crawl before a standstill round.
+            speed: if now * speed < 0.0 { 0.0 } else { now },
+        }
+    }
+}
+
+/// The motion of one axis from an instant on: a value, evaluated wherever it is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trajectory {
+    pub(super) begin: Instant,
+    pub(super) segments: [Segment; MOST_SEGMENTS],
+    pub(super) len: usize,
+    /// From here on it stands at `rest`; without it the last segment goes on for ever.
+    pub(super) end: Option<Instant>,
+    pub(super) rest: f64,
+}
+
+impl Trajectory {
+    /// The state at `at`; before the beginning, the state there. Exactly at rest, after a move on the
+    /// whole count that was its target, at and after [`Trajectory::end`].
+    pub fn state(&self, at: Instant) -> State {
+        if self.end.is_some_and(|end| end <= at) {
+            return State::at_rest(self.rest);
+        }
+        let t = self.seconds(at);
+        let segment = self.segments().iter().rev().find(|it| it.from <= t);
+        segment.map_or(State::at_rest(self.rest), |it| it.state(t))
+    }
+
+    /// The last whole count reached at `at`: the position rounded down.
+    pub fn position(&self, at: Instant) -> i64 {
+        self.state(at).position.floor() as i64
+    }
+
+    /// Counts per second at `at`, signed.
+    pub fn speed(&self, at: Instant) -> f64 {
+        self.state(at).speed
+    }
+
+    /// When it comes to rest. `None` if it never does, and for a move that can never arrive because
+    /// its speed is zero.
+    pub fn end(&self) -> Option<Instant> {
+        self.end
+    }
+
+    /// Is it under way at `at`? Also while it turns round and stands for no time at all.
+    pub fn is_moving(&self, at: Instant) -> bool {
+        match self.end {
+            Some(end) => at < end,
+            None => {
+                let t = self.seconds(at);
+                let segment = self.segments().iter().rev().find(|it| it.from <= t);
+                segment.is_some_and(|it| it.start.speed != 0.0 || it.accel != 0.0)
+            }
+        }
+    }
+
+    pub(super) fn segments(&self) -> &[Segment] {
+        &self.segments[..self.len]
+    }
+
+    /// Each segment with the second at which it is over.
+    pub(super) fn spans(&self) -> impl Iterator<Item = (&Segment, f64)> {
+        let last = self.end.map_or(f64::INFINITY, |end| self.seconds(end));
+        let ends = self.segments().iter().skip(1).map(|it| it.from).chain([last]);
+        self.segments().iter().zip(ends)
+    }
+
+    /// Seconds from the beginning to `at`.
+    pub(super) fn seconds(&self, at: Instant) -> f64 {
+        // Divided and not multiplied by 1e-9: 300 ms must be the double nearest to 0.3.
+        at.as_nanos().saturating_sub(self.begin.as_nanos()) as f64 / 1e9
+    }
+
+    /// The first instant not before `t` seconds after the beginning.
+    pub(super) fn instant(&self, t: f64) -> Instant {
+        self.begin + after(t)
+    }
+}
+
+/// The least time in whole nanoseconds that is not below `t` seconds; what is only a rounding error
+/// above a nanosecond is on it.
+pub(super) fn after(t: f64) -> Duration {
+    let ns = t * 1e9;
+    let whole = ns.round();
+    let ns = if (ns - whole).abs() < 1e-3 { whole } else { ns.ceil() };
+    Duration::from_nanos(ns as u64)
+}
+
+/// `position`, on the whole count if it is next to one.
+pub(super) fn snap(position: f64) -> f64 {
+    // By way of an integer, because rounding a float is a call on many processors and this is the one
+    // sum that everything evaluates. Out of the integer's range there is no fraction to lose.
+    let whole = (position + 0.5_f64.copysign(position)) as i64 as f64;
+    // Adding zero makes a plain zero of a negative one.
+    if (position - whole).abs() < SNAP { whole + 0.0 } else { position }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shows_the_last_count_reached() {
+        for (position, count) in [(2.999, 2), (3.0, 3), (2.999_999_9, 3), (-0.1, -1), (-3.0, -3)] {
+            let of = Trajectory::rest(Instant::ZERO, position);
+            assert_eq!(of.position(Instant::ZERO), count, "{position}");
+        }
+        let zero = Trajectory::rest(Instant::ZERO, -1e-9).state(Instant::ZERO).position;
+        assert!(zero == 0.0 && zero.is_sign_positive());
+    }
+
+    #[test]
+    fn before_its_beginning_it_is_at_its_beginning() {
+        let from = State { position: 7.0, speed: 100.0 };
+        let of = Trajectory::stop(Instant::from_millis(50), from, 1000.0);
+        assert_eq!(of.state(Instant::ZERO), from);
+        assert_eq!(of.end(), Some(Instant::from_millis(150)));
+    }
+
+    #[test]
+    fn is_small() {
+        assert!(size_of::<Trajectory>() <= 176, "one for each axis, copied at each order");
+    }
+}
