@@ -31,10 +31,10 @@ pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
         format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))
     })?;
     for setup in &mut device.setups {
-        agrees(&model, setup, line.baud.row, line.baud.digit, baud, mode)?;
-        agrees(&model, setup, line.format.row, line.format.digit, format, mode)?;
-        put(&model, setup, line.baud.row, line.baud.digit, baud);
-        put(&model, setup, line.format.row, line.format.digit, format);
+        agrees(&model, setup, &line.baud, baud, mode)?;
+        agrees(&model, setup, &line.format, format, mode)?;
+        put(&model, setup, &line.baud, baud);
+        put(&model, setup, &line.format, format);
     }
     Ok(())
 }
@@ -44,34 +44,36 @@ fn code<T>(coded: &Coded<T>, fits: impl Fn(&T) -> bool) -> Option<i64> {
 }
 
 /// A start value that somebody gave must not say something else than the line.
-fn agrees(
+fn agrees<T: Copy>(
     model: &Model,
     setup: &Setup,
-    row: RowId,
-    digit: Option<u8>,
+    coded: &Coded<T>,
     code: i64,
     mode: Mode,
 ) -> Result<(), String> {
-    let given = setup.values.iter().rev().find(|(id, _)| *id == row);
-    let Some((_, raw)) = given else { return Ok(()) };
-    let value = model.map.row(row).kind.value(*raw);
-    if digit.map_or(value, |digit| value >> (4 * digit) & 0xF) == code {
-        return Ok(());
+    let Some(raw) = start_value(setup, coded.row) else { return Ok(()) };
+    let row = model.map.row(coded.row);
+    let value = row.kind.value(raw);
+    match coded.code_in(value) == code {
+        true => Ok(()),
+        false => Err(format!("{} = {value} does not go with a line at {mode}", row.label())),
     }
-    let label = model.map.row(row).label();
-    Err(format!("{label} = {value} does not go with a line at {mode}"))
 }
 
 /// Puts `code` into the row, or into the digit of it, leaving its other digits as they are.
-fn put(model: &Model, setup: &mut Setup, row: RowId, digit: Option<u8>, code: i64) {
-    let value = |(id, raw): &(RowId, u32)| (*id == row).then_some(*raw);
-    let of_station = &model.stations[setup.station].init;
-    let present = setup.values.iter().rev().find_map(value);
-    let present = present.or_else(|| of_station.iter().find_map(value));
-    let present = present.unwrap_or(model.map.row(row).init);
-    let raw = match digit {
-        None => model.map.row(row).kind.raw(code),
+fn put<T>(model: &Model, setup: &mut Setup, coded: &Coded<T>, code: i64) {
+    let row = model.map.row(coded.row);
+    let mut of_station = model.stations[setup.station].init.iter();
+    let of_station = of_station.find(|(id, _)| *id == coded.row).map(|(_, raw)| *raw);
+    let present = start_value(setup, coded.row).or(of_station).unwrap_or(row.init);
+    let raw = match coded.digit {
+        None => row.kind.raw(code),
         Some(digit) => present & !(0xF << (4 * digit)) | (code as u32) << (4 * digit),
     };
-    setup.values.push((row, raw));
+    setup.values.push((coded.row, raw));
+}
+
+/// The start value of `row`, if it has one: of several the last counts.
+fn start_value(setup: &Setup, row: RowId) -> Option<u32> {
+    setup.values.iter().rev().find(|(id, _)| *id == row).map(|(_, raw)| *raw)
 }

@@ -13,6 +13,7 @@ use drivemu::shell::{
     Diagnostics, FileLibrary, LogFormat, OpenError, RunOptions, diagnose, run as run_bench,
 };
 use drivemu::units::parse_integer;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -61,9 +62,13 @@ fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
         let bench = bench.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
         return Ok((bench, base));
     }
-    let (choices, set) = wishes(args, &file, &text)?;
-    let model = load(&text, &choices)
-        .map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+    let compile = |choices: &Choices| {
+        let model = load(&text, choices);
+        model.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))
+    };
+    let plain = compile(&Choices::new())?;
+    let (choices, set) = wishes(args, &plain)?;
+    let model = if choices.is_empty() { plain } else { compile(&choices)? };
     let line = line(args, Arc::new(model), set)?;
     Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new()))
 }
@@ -108,14 +113,8 @@ fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
 }
 
 /// `--set` speaks of options and of registers: sorts them out.
-fn wishes(
-    args: &RunArgs,
-    file: &str,
-    text: &str,
-) -> Result<(Choices, std::collections::BTreeMap<String, i64>), Failure> {
-    let model = load(text, &Choices::new());
-    let model = model.map_err(|problems| Failure::invalid(render(&problems, file, text)))?;
-    let (mut choices, mut set) = (Choices::new(), std::collections::BTreeMap::new());
+fn wishes(args: &RunArgs, model: &Model) -> Result<(Choices, BTreeMap<String, i64>), Failure> {
+    let (mut choices, mut set) = (Choices::new(), BTreeMap::new());
     for wish in &args.set {
         let Some((key, value)) = wish.split_once('=') else {
             return Err(Failure::invalid(format!("--set {wish}: write KEY=VALUE")));
@@ -140,7 +139,7 @@ fn wishes(
 fn line(
     args: &RunArgs,
     model: Arc<Model>,
-    set: std::collections::BTreeMap<String, i64>,
+    set: BTreeMap<String, i64>,
 ) -> Result<BenchLine, Failure> {
     let spec = DeviceSpec { unit: args.unit, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {

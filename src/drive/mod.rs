@@ -134,11 +134,9 @@ impl Drive {
     /// Returns whether it has.
     pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
         self.advance_to(now);
-        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
-        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
-        self.servo.trip(trip, &mut |change| self.changes.push_back(change));
+        let tripped = self.trip(cause);
         self.settle();
-        true
+        tripped
     }
 
     /// Puts a signal on input terminal `index` at `now`, or takes it off.
@@ -185,6 +183,14 @@ impl Drive {
     /// The next change that has not been told yet.
     pub fn poll_change(&mut self) -> Option<Change> {
         self.changes.pop_front()
+    }
+
+    /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.
+    fn trip(&mut self, cause: AlarmCause) -> bool {
+        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
+        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
+        self.servo.trip(trip, &mut |change| self.changes.push_back(change));
+        true
     }
 
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {

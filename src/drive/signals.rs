@@ -1,7 +1,6 @@
 //! Input signals gathered from terminals, words and bits; output signals told from the state.
 
 use super::Drive;
-use crate::behaviour::Trip;
 use crate::model::{Monitor, Shown, Terminals};
 use crate::words::{AlarmCause, Input, Inputs, Output, Outputs};
 
@@ -10,14 +9,12 @@ impl Drive {
     pub(super) fn gather_inputs(&mut self) {
         let now = self.active_inputs();
         let before = std::mem::replace(&mut self.inputs, now);
-        let tell = &mut |change| self.changes.push_back(change);
         let forced = now.has(Input::AlarmForce).then_some(AlarmCause::Forced);
         self.servo.stand(forced);
-        let alarm = forced.and_then(|cause| self.model.wiring.alarm(cause));
-        if let Some(alarm) = alarm {
-            let (cause, code, resettable) = (alarm.cause, alarm.code, alarm.resettable);
-            self.servo.trip(Trip { cause, code, resettable }, tell);
-        }
+        forced.into_iter().for_each(|cause| {
+            self.trip(cause);
+        });
+        let tell = &mut |change| self.changes.push_back(change);
         if now.risen_since(before).has(Input::AlarmReset) {
             self.servo.reset(tell);
         }
@@ -42,8 +39,8 @@ impl Drive {
     /// Input terminals as `monitor` shows them, bit by bit.
     pub(super) fn monitor_inputs(&self, monitor: Monitor) -> u32 {
         let Some(terminals) = &self.model.wiring.input_terminals else { return 0 };
-        let active = u32::from(self.terminals) ^ self.normally_closed(terminals);
-        monitored(monitor, active, self.normally_closed(terminals), terminals)
+        let closed = self.normally_closed(terminals);
+        monitored(monitor, u32::from(self.terminals) ^ closed, closed, terminals)
     }
 
     /// Output terminals as `monitor` shows them, bit by bit.
@@ -60,6 +57,7 @@ impl Drive {
 
     fn active_inputs(&self) -> Inputs {
         let wiring = &self.model.wiring;
+        let is_set = |row, bit: u16| self.bank.raw(row) >> bit & 1 != 0;
         let mut inputs = Inputs::default();
         if let Some(terminals) = &wiring.input_terminals {
             let active = u32::from(self.terminals) ^ self.normally_closed(terminals);
@@ -74,18 +72,15 @@ impl Drive {
         if let Some(words) = &wiring.input_words {
             for (position, signal) in &words.positions {
                 let (word, bit) = (usize::from(position / 16), position % 16);
-                let enabled = words
-                    .enabled_by
-                    .get(word)
-                    .is_none_or(|row| self.bank.raw(*row) >> bit & 1 != 0);
-                if enabled && self.bank.raw(words.rows[word]) >> bit & 1 != 0 {
+                let enabled = words.enabled_by.get(word).is_none_or(|row| is_set(*row, bit));
+                if enabled && is_set(words.rows[word], bit) {
                     inputs.insert(*signal);
                 }
             }
         }
         for (row, bits) in &wiring.input_bits {
             for (bit, signal) in bits {
-                if self.bank.raw(*row) >> bit & 1 != 0 {
+                if is_set(*row, u16::from(*bit)) {
                     inputs.insert(*signal);
                 }
             }

@@ -68,12 +68,18 @@ pub struct Coded<T> {
 impl<T: Copy> Coded<T> {
     /// What `value` of the row stands for, if anything.
     pub fn decode(&self, value: i64) -> Option<T> {
-        let code = match self.digit {
-            Some(digit) => value >> (4 * digit) & 0xF,
-            None => value,
-        };
-        self.codes.get(&code).copied()
+        self.codes.get(&self.code_in(value)).copied()
     }
+
+    /// The code in `value` of the row: the whole of it, or one digit.
+    pub fn code_in(&self, value: i64) -> i64 {
+        code_in(value, self.digit)
+    }
+}
+
+/// The code in `value`: the whole of it, or one hex digit.
+fn code_in(value: i64, digit: Option<u8>) -> i64 {
+    digit.map_or(value, |digit| value >> (4 * digit) & 0xF)
 }
 
 /// Framing and character format.
@@ -237,7 +243,7 @@ fn coded<T>(
         return;
     }
     let Some(row) = row.map(|row| rows.map.row(row)) else { return };
-    let of = |value: i64| digit.map_or(value, |digit| value >> (4 * digit) & 0xF);
+    let of = |value| code_in(value, digit);
     let holds = |code: i64| match digit {
         None => row.admits(code),
         Some(_) => {

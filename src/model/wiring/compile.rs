@@ -10,6 +10,7 @@ use crate::model::rows::Compiled;
 use crate::problem::{At, Path, Problem};
 use crate::time::Duration;
 use crate::units::Dimension;
+use crate::words::RowId;
 use crate::words::{AlarmCause, Input, Word};
 
 pub(in crate::model) fn compile(
@@ -74,19 +75,17 @@ impl Wirer<'_> {
         }
         if let Some(raw) = &raw.words {
             let path = path.key("words");
-            let rows = self.row_list(&raw.registers, &path.key("registers"));
+            let (rows, enabled_by) = self.words(&raw.registers, &raw.enabled_by, &path);
             for (i, row) in rows.iter().enumerate() {
                 let path = path.key("registers").index(i);
-                self.one_word(*row, &path);
                 self.writable(*row, &path, At::Value);
                 self.react(*row, Reaction::InputWord(i as u16), &path, At::Value);
             }
-            let words = raw.registers.len();
-            let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
             for (i, row) in enabled_by.iter().enumerate() {
                 self.react(*row, Reaction::Inputs, &path.key("enabled_by").index(i), At::Value);
             }
             let by_terminals = self.wiring.input_terminals.is_some();
+            let words = raw.registers.len();
             let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
             let hold = raw.hold.as_ref().and_then(|raw| self.hold(raw, &path.key("hold")));
             self.wiring.input_words = Some(InputWords { rows, enabled_by, positions, hold });
@@ -119,14 +118,12 @@ impl Wirer<'_> {
         }
         if let Some(raw) = &raw.words {
             let path = path.key("words");
-            let rows = self.row_list(&raw.registers, &path.key("registers"));
+            let (rows, enabled_by) = self.words(&raw.registers, &raw.enabled_by, &path);
             for (i, row) in rows.iter().enumerate() {
                 let path = path.key("registers").index(i);
-                self.one_word(*row, &path);
                 self.show(*row, Shows::OutputWord(i as u16), &path, At::Value);
             }
             let words = raw.registers.len();
-            let enabled_by = self.enable_words(&raw.enabled_by, words, &path);
             let by_terminals = self.wiring.output_terminals.is_some();
             let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
             self.wiring.output_words = Some(OutputWords { enabled_by, positions });
@@ -142,6 +139,20 @@ impl Wirer<'_> {
             }
             self.show(row, Shows::Bits(map), &path, At::Key);
         }
+    }
+
+    /// Words of signals with their enable words: the rows of both.
+    fn words(
+        &mut self,
+        registers: &[String],
+        enabled_by: &[String],
+        path: &Path,
+    ) -> (Vec<RowId>, Vec<RowId>) {
+        let rows = self.row_list(registers, &path.key("registers"));
+        for (i, row) in rows.iter().enumerate() {
+            self.one_word(*row, &path.key("registers").index(i));
+        }
+        (rows, self.enable_words(enabled_by, registers.len(), path))
     }
 
     fn terminals<S>(
