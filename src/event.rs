@@ -6,7 +6,7 @@ use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{Action, AlarmCause, Refusal, RowId};
+use crate::words::{Action, AlarmCause, HomeEnd, Refusal, RowId, Step};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,6 +182,80 @@ pub enum Change {
         /// In counts of the drive.
         at: i64,
     },
+    /// A limit ends the motion.
+    Limit {
+        /// The positive one?
+        forward: bool,
+        /// One that the drive keeps by itself, without a switch?
+        soft: bool,
+    },
+    /// It runs against a hard stop.
+    Hits {
+        /// In counts of the drive.
+        at: i64,
+    },
+    /// It should be farther from where it is than is allowed.
+    Deviates,
+    /// It looks for its origin.
+    Homes {
+        /// Number of the method.
+        method: i64,
+    },
+    /// It takes a homing step.
+    Seeks {
+        /// Number of the method.
+        method: i64,
+        /// The step.
+        step: Step,
+        /// In thousandths of a revolution a minute; the sign is the direction.
+        mrpm: i64,
+    },
+    /// What a homing step waited for has come.
+    Finds {
+        /// Number of the method.
+        method: i64,
+        /// The step.
+        step: Step,
+        /// In counts of the drive.
+        at: i64,
+    },
+    /// A homing step has come to a limit instead.
+    FindsLimit {
+        /// Number of the method.
+        method: i64,
+        /// The positive one?
+        forward: bool,
+        /// In counts of the drive.
+        at: i64,
+    },
+    /// A homing looks for the index pulse that refines its origin.
+    Refines {
+        /// Number of the method.
+        method: i64,
+        /// In the positive direction?
+        forward: bool,
+    },
+    /// A homing has found the origin.
+    Origin {
+        /// Number of the method.
+        method: i64,
+        /// In counts of the drive, as they were until now.
+        at: i64,
+    },
+    /// A homing is done.
+    Homed {
+        /// Number of the method.
+        method: i64,
+        /// What the position register says now, in counts of the drive.
+        position: i64,
+    },
+    /// A homing ended without an origin.
+    HomingLost {
+        /// Number of the method.
+        method: i64,
+        /// Why.
+        why: HomeEnd,
+    },
     /// An order came and does nothing.
     Ignored {
         /// The order.
@@ -207,4 +281,12 @@ pub enum Ignored {
     Held,
     /// The axis moves.
     Moving,
+    /// It looks for its origin.
+    Homing,
+    /// There is a limit in that direction.
+    Limit,
+    /// A parameter says that something else starts it, or nothing does.
+    Starter,
+    /// A parameter holds a value that stands for nothing.
+    NoMeaning,
 }

@@ -6,8 +6,6 @@
 //! checksums is completed for `rtu` and for `ascii`.
 
 use crate::kit::{Conversation, play_all};
-use drivemu::model::Choices;
-use drivemu::model::builtin::Builtin;
 use std::collections::BTreeMap;
 
 /// How many frames each manual prints.
@@ -22,21 +20,7 @@ const RECONSTRUCTED: [&str; 4] = ["Y-01", "Y-02", "Y-05", "Y-06"];
 /// Printed without a checksum.
 const BARE: [&str; 2] = ["K-11", "K-12"];
 
-/// Frames that can't replay as printed yet, and why.
-const WAITING: [(&str, &str); 2] = [
-    ("H-48", "asks for the position behind a homing; nothing homes yet"),
-    ("H-49", "is that position, 0; nothing homes yet"),
-];
-
-/// Frames that replay but whose effect waits: model, a row that will not be `sim: none` any more once the
-/// effect is there, and what is missing.
-const EFFECT_WAITS: [(&str, &str, &str, &str); 2] = [
-    ("H-44", "hcfa-x", "P20.12", "starts homing"),
-    ("Y-35", "yako-closed-loop", "home_method", "starts homing"),
-];
-
 const FOLDERS: [&str; 3] = ["tests/frames/hcfa-x", "tests/frames/k-series", "tests/frames/yako"];
-const WAITING_FOLDER: &str = "tests/frames/waiting";
 
 #[test]
 fn frames_replay_as_printed() {
@@ -60,36 +44,10 @@ fn frames_replay_on_a_strict_line() {
     }
 }
 
-/// A frame leaves the list of the waiting as soon as it replays.
-#[test]
-fn waiting_frames_still_wait() {
-    let waiting = Conversation::all(WAITING_FOLDER);
-    for conversation in &waiting {
-        let played = conversation.play();
-        assert!(played.is_err(), "{} replays: it waits no longer", conversation.path);
-    }
-    let names = names(waiting);
-    let listed: Vec<_> = WAITING.iter().map(|(frame, _)| format!("{frame} ")).collect();
-    assert_eq!(names.into_keys().collect::<Vec<_>>(), listed);
-}
-
-/// An effect leaves the list as soon as its row acts.
-#[test]
-fn waiting_effects_still_wait() {
-    let replayed = names(FOLDERS.iter().flat_map(|folder| Conversation::all(folder)));
-    for (frame, model, row, effect) in EFFECT_WAITS {
-        assert!(replayed.contains_key(&format!("{frame} ")), "{frame}");
-        let model = Builtin::find(model).expect("embedded").load(&Choices::new()).expect("good");
-        let row = model.map.row(model.map.find(row).expect("a row"));
-        assert!(row.inert, "{} acts now: {frame} {effect}, test that", row.label());
-    }
-}
-
 /// Nothing printed is missing, nothing is there twice.
 #[test]
 fn each_printed_frame_occurs_once() {
-    let folders = FOLDERS.iter().chain([&WAITING_FOLDER]);
-    let names = names(folders.flat_map(|folder| Conversation::all(folder)));
+    let names = names(FOLDERS.iter().flat_map(|folder| Conversation::all(folder)));
     let mut want: BTreeMap<String, usize> = BTreeMap::new();
     for (manual, count) in PRINTED {
         for number in 1..=count {
@@ -117,8 +75,7 @@ fn frames_stand_on_the_side_they_are_printed_on() {
         ("K-", "12") => false,
         (_, number) => !even(number),
     };
-    for conversation in FOLDERS.iter().chain([&WAITING_FOLDER]).flat_map(|it| Conversation::all(it))
-    {
+    for conversation in FOLDERS.iter().flat_map(|it| Conversation::all(it)) {
         for (line, frame, form) in tagged(&conversation.texts[0]) {
             // Misprinted answers are put to the drive to see what it makes of them.
             let odd_one = matches!((frame, form), ("K-04" | "K-06", ""));

@@ -9,8 +9,11 @@ use drivemu::bench::DeviceSpec;
 use drivemu::bus::Command;
 use drivemu::event::{Change, DriveId, What};
 use drivemu::model::{RowId, Shows, Wiring};
+use drivemu::motion::Machine;
 use drivemu::testkit::{Rig, to_hex};
-use drivemu::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Word};
+use drivemu::words::{
+    Action, AlarmCause, Edge, Input, Modifier, Output, Pace, Quantity, Step, Then, Until, Word,
+};
 use std::time::Duration;
 
 const ACME: &str = include_str!("models/acme-s1.yaml");
@@ -70,6 +73,31 @@ fn each_input_acts_from_each_source() {
                     rig.advance(Duration::from_millis(100));
                     assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
                 }
+                Input::HomeSwitch => {
+                    give(&mut rig, Action::Enable);
+                    give(&mut rig, Action::HomeStart);
+                    rig.advance(Duration::from_millis(200));
+                    source(&mut rig, input, true);
+                    assert!(rig.log().contains("home_switch on at"), "{place}{}", rig.log());
+                }
+                Input::LimitPos | Input::LimitNeg => {
+                    let away = if input == Input::LimitPos { -600i16 } else { 600 };
+                    set(&mut rig, "P002", (-away) as u16);
+                    running(&mut rig);
+                    source(&mut rig, input, true);
+                    assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                    give(&mut rig, Action::RunStart);
+                    assert!(!rig.drive().output(Output::Moving), "into it: {place}");
+                    set(&mut rig, "P002", away as u16);
+                    give(&mut rig, Action::RunStart);
+                    assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
+                Input::HomeStart => {
+                    set(&mut rig, "P040", 0x1000);
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
                 Input::AlarmForce => {
                     source(&mut rig, input, true);
                     assert_eq!(rig.drive().quantity(Quantity::AlarmCode), 0x99, "{place}");
@@ -97,6 +125,22 @@ fn each_output_shows_both_ways() {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::MoveStart);
                 rig.advance(Duration::from_secs(2));
+            }
+            Output::HomeDone => {
+                let machine =
+                    Machine { hard_stop: Some([-100_000, 100_000]), ..Machine::default() };
+                rig = acme(&DeviceSpec { machine, ..DeviceSpec::default() });
+                set(&mut rig, "P030", 1);
+                give(&mut rig, Action::Enable);
+                give(&mut rig, Action::HomeStart);
+                rig.advance(Duration::from_secs(5));
+            }
+            Output::AtLimitPos => by_bit(&mut rig, Input::LimitPos, true),
+            Output::AtLimitNeg => by_bit(&mut rig, Input::LimitNeg, true),
+            Output::BeyondPos | Output::BeyondNeg => {
+                let position = if output == Output::BeyondPos { 500_001 } else { -500_001 };
+                rig = acme(&DeviceSpec { position, ..DeviceSpec::default() });
+                set(&mut rig, "P042", 0x20);
             }
         }
         seen.push(shown(&rig, output));
@@ -139,7 +183,9 @@ fn each_action_acts() {
             Action::Release => give(&mut rig, Action::Enable),
             Action::AlarmReset => raise(&mut rig, AlarmCause::Overload),
             Action::Stop | Action::QuickStop => running(&mut rig),
-            Action::MoveStart | Action::RunStart => give(&mut rig, Action::Enable),
+            Action::HomeStart | Action::MoveStart | Action::RunStart => {
+                give(&mut rig, Action::Enable);
+            }
             Action::Enable
             | Action::ClearPosition
             | Action::StoreAll
@@ -152,6 +198,12 @@ fn each_action_acts() {
                 Change::Stands { at: rig.drive().quantity(Quantity::PositionActual) }
             }
             Action::Stop => Change::Stops,
+            Action::HomeStart => {
+                let edge = Edge { signal: Input::HomeSwitch, on: true };
+                let (forward, pace, until) = (true, Pace::Fast, Until::Edge(edge));
+                let step = Step { forward, pace, until, then: Then::Ramp };
+                Change::Seeks { method: 0, step, mrpm: 120_000 }
+            }
             Action::MoveStart => Change::Moves { to: 200_005 },
             Action::RunStart => Change::Runs { mrpm: 60_000 },
             Action::Enable => Change::Enabled(true),
@@ -177,7 +229,7 @@ fn each_alarm_has_its_number() {
         assert!(rig.drive().output(Output::Alarm) && !rig.drive().output(Output::Ready));
         numbers.push(rig.drive().quantity(Quantity::AlarmCode));
     }
-    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x99]);
+    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x71, 0x72, 0x73, 0x99]);
 }
 
 /// A drive with a run of 60 rpm and a move of 200000 counts to make, unless `spec` says otherwise.
@@ -210,6 +262,12 @@ fn write(rig: &mut Rig, row: RowId, value: u16) {
     let request = [&[rig.drive().unit(), 0x06][..], &at, &value.to_be_bytes()].concat();
     let answer = rig.ask(&to_hex(&request));
     assert_eq!(answer, to_hex(&request), "{}", rig.log());
+}
+
+/// Writes the row called `name`.
+fn set(rig: &mut Rig, name: &str, value: u16) {
+    let row = rig.drive().model().map.find(name).expect("a row of the model");
+    write(rig, row, value);
 }
 
 fn set_bit(rig: &mut Rig, row: RowId, bit: u16, on: bool) {

@@ -6,6 +6,6 @@ mod phase;
 mod servo;
 
 pub use hold::Hold;
-pub use motor::{Motor, Ramp, Wants};
+pub use motor::{HomeOrder, Motor, Ramp, Wants};
 pub use phase::Stage;
 pub use servo::{Servo, Trip};

@@ -1,15 +1,27 @@
-//! What the axis is doing: it stands, moves to a position, runs, jogs, stops or coasts.
+//! What the axis is doing: it stands, moves to a position, runs, jogs, looks for its origin, stops or coasts.
 //!
-//! An order becomes a trajectory and a phase; after that nothing happens until the trajectory ends, which
-//! is the only deadline. Speeds and slopes come with the order and hold until the next one, so a
-//! deceleration written during a motion counts from the next motion on.
+//! An order becomes a trajectory and a phase; after that nothing happens until something on the way does
+//! (`due.rs`): the trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the
+//! order and hold until the next one, so a deceleration written during a motion counts from the next motion on.
 //!
-//! Deliberately absent: following error, limits, homing.
+//! The trajectory is what the axis is told. Where it is can be less: a hard stop holds it.
+//!
+//! Deliberately absent: following error.
+
+mod due;
+mod home;
+mod limits;
+
+pub use home::HomeOrder;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
-use crate::motion::{Move, State, Trajectory};
+use crate::motion::{Machine, Move, State, Trajectory};
 use crate::time::{Duration, Instant};
+use crate::words::{HomeEnd, Inputs, LimitStop};
+use due::Due;
+use home::Homing;
+use std::collections::VecDeque;
 
 /// A speed and how to get to it and from it; counts per second, the sign is the direction, and counts per
 /// second squared.
@@ -34,6 +46,14 @@ pub struct Wants {
     pub quick_stop: bool,
     /// Jog; `None` for neither direction, or both.
     pub jog: Option<Ramp>,
+    /// The signals of home switch and limits, among others.
+    pub switches: Inputs,
+    /// Positions of the machine that the axis must not leave, if such are in force.
+    pub soft_limits: Option<[i64; 2]>,
+    /// How a limit stops it.
+    pub limit_stop: LimitStop,
+    /// Counts of deviation that are too many.
+    pub deviation: Option<i64>,
 }
 
 /// One axis.
@@ -41,46 +61,59 @@ pub struct Wants {
 pub struct Motor {
     trajectory: Trajectory,
     phase: Phase,
+    /// Where the motion goes in the end: the positive direction?
+    forward: bool,
     /// Slope of a stop, from the order that started the motion.
     decel: f64,
     /// How long it runs out without power.
     coast: Duration,
-    power: bool,
-    /// A level holds it still.
-    held: bool,
+    machine: Machine,
+    wants: Wants,
     /// An order ended the jog; its level must go before it acts again.
     jog_spent: bool,
     in_position: bool,
+    homing: Option<Box<Homing>>,
+    due: Due,
+    told: VecDeque<Stage>,
 }
 
 impl Motor {
-    /// Standing at `position`, without power.
-    pub fn standing(now: Instant, position: f64, coast: Duration) -> Self {
+    /// Standing at `position` of `machine`, without power.
+    pub fn standing(now: Instant, position: f64, coast: Duration, machine: Machine) -> Self {
         Self {
             trajectory: Trajectory::rest(now, position),
             phase: Phase::Standing,
+            forward: true,
             decel: 0.0,
             coast,
-            power: false,
-            held: false,
+            machine,
+            wants: Wants::default(),
             jog_spent: false,
             in_position: false,
+            homing: None,
+            due: Due::default(),
+            told: VecDeque::with_capacity(8),
         }
+    }
+
+    /// What stands along the axis.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
     }
 
     /// The last whole count reached, in the machine's coordinate.
     pub fn position(&self, now: Instant) -> i64 {
-        self.trajectory.position(now)
+        self.state(now).position.floor() as i64
     }
 
     /// Counts per second.
     pub fn speed(&self, now: Instant) -> f64 {
-        self.trajectory.speed(now)
+        self.state(now).speed
     }
 
     /// Position and speed as they are, not in whole counts.
     pub fn state(&self, now: Instant) -> State {
-        self.trajectory.state(now)
+        self.machine.hold(self.trajectory.state(now))
     }
 
     /// Is a motion under way?
@@ -88,162 +121,173 @@ impl Motor {
         self.phase != Phase::Standing
     }
 
+    /// Is it looking for its origin?
+    pub fn is_homing(&self) -> bool {
+        self.phase == Phase::Homing
+    }
+
     /// Does it stand where its last move was to end?
     pub fn is_in_position(&self) -> bool {
         self.in_position
     }
 
-    /// When the motion ends by itself.
-    pub fn deadline(&self) -> Option<Instant> {
-        self.trajectory.end().filter(|_| self.is_moving())
-    }
-
-    /// Lets time pass up to `now`, which is not later than the deadline.
-    pub fn advance(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
-        if self.deadline().is_some_and(|end| end <= now) {
-            self.in_position = self.phase == Phase::Moving;
-            self.phase = Phase::Standing;
-            tell(Stage::Stands(self.position(now)));
-        }
+    /// The next thing to be told.
+    pub fn poll_stage(&mut self) -> Option<Stage> {
+        self.told.pop_front()
     }
 
     /// Follows the levels. To be called whenever one of them may have changed, or a motion has ended.
-    pub fn follow(&mut self, now: Instant, wants: Wants, tell: &mut impl FnMut(Stage)) {
-        self.power = wants.power;
-        self.held = wants.stop || wants.quick_stop;
+    pub fn follow(&mut self, now: Instant, wants: Wants) {
+        let before = std::mem::replace(&mut self.wants, wants);
+        if (before.soft_limits, before.deviation) != (wants.soft_limits, wants.deviation) {
+            self.look_ahead(now);
+        }
         self.jog_spent &= wants.jog.is_some();
         if !wants.power {
-            return self.coast(now, tell);
+            return self.power_off(now);
         }
         if wants.quick_stop {
-            self.halt(now, tell);
+            self.halt(now);
         } else if wants.stop {
-            self.brake(now, tell);
+            self.brake(now);
+        }
+        if self.is_homing() {
+            self.home_look(now);
+        } else {
+            self.obey_limits(now);
         }
         match wants.jog {
-            None if matches!(self.phase, Phase::Jogging { .. }) => self.brake(now, tell),
+            None if matches!(self.phase, Phase::Jogging { .. }) => self.brake(now),
             None => {}
-            Some(ramp) => self.jog(now, ramp, tell),
+            Some(ramp) => self.jog(now, ramp),
         }
+        self.advance(now);
     }
 
     /// Goes to `target`, given where it is.
     ///
     /// # Errors
-    /// Why it does not start: without power, while held, or while it moves and may not `interrupt`.
+    /// Why it does not start: without power, while held, while it moves and may not `interrupt`, or into a
+    /// limit.
     pub fn start_move(
         &mut self,
         now: Instant,
         target: impl FnOnce(i64) -> i64,
         how: Move,
         interrupt: bool,
-        tell: &mut impl FnMut(Stage),
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
-        let target = target(self.position(now));
+        let here = self.position(now);
+        let target = target(here);
+        self.may_go(now, target - here)?;
         let trajectory = Trajectory::to_position(now, self.state(now), target, how);
-        self.decel = how.decel;
-        self.begin(now, trajectory, Phase::Moving, Stage::Moves(target), tell);
+        (self.decel, self.forward) = (how.decel, target >= here);
+        self.begin(now, trajectory, Phase::Moving);
+        self.told.push_back(Stage::Moves(target));
+        self.advance(now);
         Ok(())
     }
 
     /// Goes at a speed until stopped.
     ///
     /// # Errors
-    /// Why it does not start: without power, while held, or while it moves.
-    pub fn start_run(
-        &mut self,
-        now: Instant,
-        ramp: Ramp,
-        tell: &mut impl FnMut(Stage),
-    ) -> Result<(), Ignored> {
+    /// Why it does not start: without power, while held, while it moves, or into a limit.
+    pub fn start_run(&mut self, now: Instant, ramp: Ramp) -> Result<(), Ignored> {
         self.may_start(false)?;
-        self.go(now, ramp, Phase::Running, Stage::Runs(ramp.speed), tell);
+        self.may_go(now, ramp.speed as i64)?;
+        self.go(now, ramp, Phase::Running);
+        self.told.push_back(Stage::Runs(ramp.speed));
+        self.advance(now);
         Ok(())
     }
 
     /// Slows down to a standstill.
-    pub fn stop(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+    pub fn stop(&mut self, now: Instant) {
         self.jog_spent = true;
-        self.brake(now, tell);
+        self.brake(now);
+        self.advance(now);
     }
 
     /// Stands at once.
-    pub fn quick_stop(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+    pub fn quick_stop(&mut self, now: Instant) {
         self.jog_spent = true;
-        self.halt(now, tell);
+        self.halt(now);
+        self.advance(now);
     }
 
     fn may_start(&self, interrupt: bool) -> Result<(), Ignored> {
         match () {
-            () if !self.power => Err(Ignored::PowerOff),
-            () if self.held => Err(Ignored::Held),
+            () if !self.wants.power => Err(Ignored::PowerOff),
+            () if self.is_held() => Err(Ignored::Held),
+            () if self.is_homing() => Err(Ignored::Homing),
             () if self.is_moving() && !interrupt => Err(Ignored::Moving),
             () => Ok(()),
         }
     }
 
-    fn jog(&mut self, now: Instant, ramp: Ramp, tell: &mut impl FnMut(Stage)) {
+    /// Does a level hold it still?
+    fn is_held(&self) -> bool {
+        self.wants.stop || self.wants.quick_stop
+    }
+
+    fn jog(&mut self, now: Instant, ramp: Ramp) {
         let forward = ramp.speed >= 0.0;
         let free = match self.phase {
             Phase::Standing | Phase::Stopping | Phase::Coasting => true,
             Phase::Jogging { forward: now } => now != forward,
-            Phase::Moving | Phase::Running => false,
+            Phase::Moving | Phase::Running | Phase::Homing => false,
         };
-        if free && !self.held && !self.jog_spent {
-            self.go(now, ramp, Phase::Jogging { forward }, Stage::Jogs(ramp.speed), tell);
+        let may = !self.is_held() && !self.jog_spent && !self.is_at_limit(now, forward);
+        if free && may {
+            self.go(now, ramp, Phase::Jogging { forward });
+            self.told.push_back(Stage::Jogs(ramp.speed));
         }
     }
 
-    fn go(
-        &mut self,
-        now: Instant,
-        ramp: Ramp,
-        phase: Phase,
-        stage: Stage,
-        tell: &mut impl FnMut(Stage),
-    ) {
+    fn go(&mut self, now: Instant, ramp: Ramp, phase: Phase) {
         let Ramp { speed, accel, decel } = ramp;
         let trajectory = Trajectory::to_speed(now, self.state(now), speed, accel, decel);
-        self.decel = decel;
-        self.begin(now, trajectory, phase, stage, tell);
+        (self.decel, self.forward) = (decel, speed >= 0.0);
+        self.begin(now, trajectory, phase);
     }
 
-    fn brake(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
-        if matches!(self.phase, Phase::Moving | Phase::Running | Phase::Jogging { .. }) {
+    fn brake(&mut self, now: Instant) {
+        if self.is_moving() && !matches!(self.phase, Phase::Stopping | Phase::Coasting) {
+            self.lose_origin(HomeEnd::Stopped);
             let trajectory = Trajectory::stop(now, self.state(now), self.decel);
-            self.begin(now, trajectory, Phase::Stopping, Stage::Stops, tell);
+            self.begin(now, trajectory, Phase::Stopping);
+            self.told.push_back(Stage::Stops);
         }
     }
 
-    fn halt(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
-        if self.power && self.is_moving() {
+    fn halt(&mut self, now: Instant) {
+        if self.wants.power && self.is_moving() {
+            self.lose_origin(HomeEnd::Stopped);
             let trajectory = Trajectory::halt(now, self.state(now));
-            self.begin(now, trajectory, Phase::Stopping, Stage::Stops, tell);
+            self.begin(now, trajectory, Phase::Stopping);
+            self.told.push_back(Stage::Stops);
         }
     }
 
-    fn coast(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
+    fn power_off(&mut self, now: Instant) {
         if self.is_moving() && self.phase != Phase::Coasting {
-            let trajectory = Trajectory::coast(now, self.state(now), self.coast);
-            self.begin(now, trajectory, Phase::Coasting, Stage::Coasts, tell);
+            self.lose_origin(HomeEnd::PowerOff);
+            self.run_out(now);
+            self.told.push_back(Stage::Coasts);
+            self.advance(now);
         }
     }
 
-    fn begin(
-        &mut self,
-        now: Instant,
-        trajectory: Trajectory,
-        phase: Phase,
-        stage: Stage,
-        tell: &mut impl FnMut(Stage),
-    ) {
+    fn run_out(&mut self, now: Instant) {
+        let trajectory = Trajectory::coast(now, self.state(now), self.coast);
+        self.begin(now, trajectory, Phase::Coasting);
+    }
+
+    fn begin(&mut self, now: Instant, trajectory: Trajectory, phase: Phase) {
         // An order takes the place of a jog for good: its level may still be there when the order is done.
         self.jog_spent |= matches!(self.phase, Phase::Jogging { .. }) && phase == Phase::Moving;
         (self.trajectory, self.phase, self.in_position) = (trajectory, phase, false);
-        tell(stage);
-        // What takes no time is over.
-        self.advance(now, tell);
+        self.look_ahead(now);
     }
 }
 

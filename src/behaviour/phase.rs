@@ -1,5 +1,7 @@
 //! What an axis is doing, and what it tells about it.
 
+use crate::words::{HomeEnd, Step};
+
 /// What an axis is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
@@ -14,9 +16,11 @@ pub(super) enum Phase {
         /// In the positive direction?
         forward: bool,
     },
+    /// Looking for its origin.
+    Homing,
     /// Slowing down.
     Stopping,
-    /// Running out without power.
+    /// Running out.
     Coasting,
 }
 
@@ -35,4 +39,44 @@ pub enum Stage {
     Coasts,
     /// It stands at this position.
     Stands(i64),
+    /// A limit ends the motion.
+    Limit {
+        /// The positive one?
+        forward: bool,
+        /// One that the drive keeps by itself, without a switch?
+        soft: bool,
+    },
+    /// It runs against a hard stop at this position.
+    Hits(i64),
+    /// It should be farther from where it is than is allowed.
+    Deviates,
+    /// It takes a homing step, at this speed.
+    Seeks(Step, f64),
+    /// What a homing step waited for has come at this position.
+    Finds(Step, i64),
+    /// It has come to a limit instead.
+    FindsLimit {
+        /// The positive one?
+        forward: bool,
+        /// Where.
+        at: i64,
+    },
+    /// It looks for the index pulse that refines its origin.
+    Refines {
+        /// In the positive direction?
+        forward: bool,
+    },
+    /// The index pulse that refines the origin has come at this position.
+    Refined(i64),
+    /// The homing is over: this is the origin.
+    Homed(i64),
+    /// The homing is over without an origin.
+    Lost {
+        /// Why.
+        why: HomeEnd,
+        /// In which direction it went.
+        forward: bool,
+        /// Is it a fault?
+        alarm: bool,
+    },
 }

@@ -2,6 +2,7 @@
 
 use crate::drive::Setup;
 use crate::model::{Model, RowId};
+use crate::motion::Machine;
 use crate::problem::suggest;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,6 +18,10 @@ pub struct DeviceSpec {
     pub switches: Option<u8>,
     /// Input terminals that carry a signal from the start, by name.
     pub terminals: Vec<String>,
+    /// What stands along the axis, in counts of the machine.
+    pub machine: Machine,
+    /// Where the axis stands at power-on, in counts of the machine.
+    pub start: i64,
     /// What the position register says at power-on, in counts.
     pub position: i64,
 }
@@ -87,7 +92,15 @@ impl Device {
             values.extend(
                 spec.unit.and_then(|unit| unit_value(&model, unit, station, &mut problems)),
             );
-            Setup { station, values, switches, terminals, position: spec.position }
+            Setup {
+                station,
+                values,
+                switches,
+                terminals,
+                machine: spec.machine,
+                start: spec.start,
+                position: spec.position,
+            }
         });
         let setups = setups.collect();
         match problems.is_empty() {

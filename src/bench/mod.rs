@@ -4,12 +4,14 @@
 //! opens nothing. Model files are fetched through a [`Library`], which is the shell's to provide.
 
 mod device;
+mod machine;
 mod match_line;
 mod parse;
 pub mod raw;
 mod wire_spec;
 
 pub use device::{Device, DeviceSpec, SpecProblem, Wish};
+pub use machine::{MachineProblem, machine};
 pub use match_line::match_line;
 pub use parse::{kind_of, parse};
 pub use wire_spec::{PATIENT_GAP, WireSpec};

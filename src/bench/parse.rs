@@ -2,8 +2,8 @@
 
 use super::raw::{KEYS, RawBenchDrive, RawBenchLine};
 use super::{
-    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, SpecProblem, WireSpec, Wish,
-    match_line,
+    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, SpecProblem, WireSpec,
+    Wish, machine, match_line,
 };
 use crate::drive::Drive;
 use crate::model::{Choices, Model};
@@ -161,11 +161,18 @@ impl Reader<'_> {
 
     fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
         let model = self.model(raw, path)?;
+        let machine = machine(&raw.machine).map_err(|problems| {
+            let path = path.key("machine");
+            let problem = |it: MachineProblem| Problem::value(path.key(it.key), it.what);
+            self.problems.extend(problems.into_iter().map(problem));
+        });
         let spec = DeviceSpec {
             unit: raw.unit,
             set: raw.set.clone(),
             switches: raw.switches,
             terminals: raw.terminals.clone(),
+            machine: machine.ok()?,
+            start: raw.machine.start.into(),
             position: raw.machine.position.into(),
         };
         match Device::new(model, &spec) {

@@ -82,13 +82,36 @@ fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i6
     Ok(values.map(named).collect())
 }
 
-/// The machine on the axis of a drive.
-#[derive(Debug, Clone, Default, Deserialize)]
+/// The machine on the axis of a drive. Its positions are in its own coordinate, which homing never shifts.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
 pub struct RawMachine {
+    /// Where the axis stands at power-on, in counts; default 0.
+    pub start: i32,
     /// What the drive's position register says at power-on, in counts; default 0.
-    #[serde(default)]
     pub position: i32,
+    /// The home switch is active from the first count to before the second; default: there is none.
+    pub home: Option<[i32; 2]>,
+    /// The negative limit switch is active below this count; default: there is none.
+    pub negative_limit: Option<i32>,
+    /// The positive limit switch is active from this count on; default: there is none.
+    pub positive_limit: Option<i32>,
+    /// The axis gets from the first count to the second and no further; default: it has no end.
+    pub hard_stop: Option<[i32; 2]>,
+    /// Index pulses of the encoder; default: one a revolution, one of them at 0.
+    pub index: Option<RawIndex>,
+}
+
+/// Index pulses of an encoder.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawIndex {
+    /// Counts from one to the next.
+    pub every: i32,
+    /// The count of one of them; default 0.
+    #[serde(default)]
+    pub offset: i32,
 }
 
 /// JSON Schema of a bench file, for editors.
@@ -101,18 +124,26 @@ pub fn schema() -> serde_json::Value {
 pub const KEYS: &[&str] = &[
     "ascii",
     "drives",
+    "every",
+    "hard_stop",
+    "home",
+    "index",
     "lines",
     "machine",
     "model",
     "name",
+    "negative_limit",
+    "offset",
     "options",
     "position",
+    "positive_limit",
     "pty",
     "rtu_over_tcp",
     "seed",
     "serial",
     "set",
     "settings",
+    "start",
     "strict",
     "switches",
     "tcp",

@@ -5,6 +5,7 @@
 //! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
+mod home;
 mod motion;
 mod react;
 mod setup;
@@ -46,6 +47,12 @@ pub struct Drive {
     motor: Motor,
     /// Where the machine is when the position register says 0.
     zero: i64,
+    /// Has an origin been found since power came on?
+    home_done: bool,
+    /// Number of the last homing method.
+    method: i64,
+    /// Has the power stage not been on since power came on?
+    never_enabled: bool,
     /// What the position is called whenever power comes on: there is no absolute encoder.
     position_at_power_on: i64,
     changes: VecDeque<Change>,
@@ -63,8 +70,11 @@ impl Drive {
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
-            motor: Motor::standing(now, 0.0, model.wiring.axis.coast),
+            motor: Motor::standing(now, setup.start as f64, model.wiring.axis.coast, setup.machine),
             zero: 0,
+            home_done: false,
+            method: 0,
+            never_enabled: true,
             model,
             station: setup.station,
             now,
@@ -167,7 +177,12 @@ impl Drive {
         while let Some(at) = self.deadline().filter(|at| *at <= now) {
             self.now = self.now.max(at);
             self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
-            self.end_motion();
+            // Switches first: what they are wired to has changed before anything else happens.
+            if self.motor.take_edge(self.now) {
+                self.gather_inputs();
+            }
+            self.motor.advance(self.now);
+            self.tell_stages();
             self.expire_words();
             self.settle();
         }
@@ -249,9 +264,9 @@ impl Drive {
         let servo = self.model.wiring.servo;
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
-        self.motor = Motor::standing(now, position, coast);
+        self.motor = Motor::standing(now, position, coast, *self.motor.machine());
+        (self.home_done, self.never_enabled) = (false, true);
         self.holds.iter_mut().for_each(Hold::stop);
-        self.inputs = Inputs::default();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
@@ -260,6 +275,8 @@ impl Drive {
         if from.is_some() && from != mode {
             self.changes.push_back(Change::Mode { from, to: mode });
         }
+        // What is active when power comes on does not rise.
+        self.inputs = self.active_inputs();
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
         self.settle();
@@ -291,7 +308,11 @@ impl Drive {
         }
         let tell = &mut |change| self.changes.push_back(change);
         match action {
-            Action::QuickStop | Action::Stop | Action::MoveStart | Action::RunStart => {
+            Action::QuickStop
+            | Action::Stop
+            | Action::HomeStart
+            | Action::MoveStart
+            | Action::RunStart => {
                 self.order(action, modifiers);
             }
             Action::Enable => self.servo.latch(true, tell),

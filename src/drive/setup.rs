@@ -1,5 +1,6 @@
 //! What a bench says about one station before it is switched on.
 
+use crate::motion::Machine;
 use crate::words::RowId;
 
 /// A station as the bench sets it up.
@@ -13,6 +14,10 @@ pub struct Setup {
     pub switches: u8,
     /// Signals on the input terminals, bit by bit.
     pub terminals: u16,
+    /// What stands along the axis.
+    pub machine: Machine,
+    /// Where the axis stands when power comes on for the first time, in counts of the machine.
+    pub start: i64,
     /// What the position register says at power-on, in counts.
     pub position: i64,
 }

@@ -2,7 +2,8 @@
 
 use super::Drive;
 use crate::model::{Monitor, Shown, Terminals};
-use crate::words::{AlarmCause, Input, Inputs, Output, Outputs};
+use crate::motion::Switch;
+use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs};
 
 impl Drive {
     /// Looks at every source again and tells the behaviours what changed.
@@ -20,11 +21,20 @@ impl Drive {
         }
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
         self.settle();
+        if now.risen_since(before).has(Input::HomeStart) {
+            self.home_by(HomeStarter::Input);
+        }
     }
 
     /// The output signals, right now.
     pub(super) fn outputs(&self) -> Outputs {
         let enabled = self.servo.is_enabled();
+        let beyond = |forward: bool| {
+            self.soft_limits().is_some_and(|[low, high]| {
+                let position = self.motor.position(self.now);
+                if forward { position > high } else { position < low }
+            })
+        };
         Outputs::default()
             .with(Output::Powered, true)
             .with(Output::Ready, self.servo.is_ready())
@@ -34,13 +44,18 @@ impl Drive {
             .with(Output::Moving, self.motor.is_moving())
             .with(Output::InPosition, self.motor.is_in_position())
             .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
+            .with(Output::HomeDone, self.home_done)
+            .with(Output::AtLimitPos, self.inputs.has(Input::LimitPos))
+            .with(Output::AtLimitNeg, self.inputs.has(Input::LimitNeg))
+            .with(Output::BeyondPos, beyond(true))
+            .with(Output::BeyondNeg, beyond(false))
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.
     pub(super) fn monitor_inputs(&self, monitor: Monitor) -> u32 {
         let Some(terminals) = &self.model.wiring.input_terminals else { return 0 };
         let closed = self.normally_closed(terminals);
-        monitored(monitor, u32::from(self.terminals) ^ closed, closed, terminals)
+        monitored(monitor, self.active_terminals(terminals), closed, terminals)
     }
 
     /// Output terminals as `monitor` shows them, bit by bit.
@@ -55,18 +70,43 @@ impl Drive {
         monitored(monitor, active, self.normally_closed(terminals), terminals)
     }
 
-    fn active_inputs(&self) -> Inputs {
+    /// Input terminals that are active, bit by bit. One that has the function of a switch of the machine is wired
+    /// to it, as a normally open or closed one.
+    fn active_terminals(&self, terminals: &Terminals<Input>) -> u32 {
+        let mut active = u32::from(self.terminals) ^ self.normally_closed(terminals);
+        for (i, row) in terminals.functions.iter().enumerate() {
+            let signal = terminals.meaning(self.bank.raw(*row));
+            if let Some(switch) = signal.and_then(switch).filter(|it| self.motor.machine().has(*it))
+            {
+                let on = self.is_switched(switch) || u32::from(self.terminals) >> i & 1 != 0;
+                active = active & !(1 << i) | u32::from(on) << i;
+            }
+        }
+        active
+    }
+
+    fn is_switched(&self, switch: Switch) -> bool {
+        let state = self.motor.state(self.now);
+        self.motor.machine().is_active(switch, state.position)
+    }
+
+    pub(super) fn active_inputs(&self) -> Inputs {
         let wiring = &self.model.wiring;
         let is_set = |row, bit: u16| self.bank.raw(row) >> bit & 1 != 0;
         let mut inputs = Inputs::default();
         if let Some(terminals) = &wiring.input_terminals {
-            let active = u32::from(self.terminals) ^ self.normally_closed(terminals);
+            let active = self.active_terminals(terminals);
             for (i, row) in terminals.functions.iter().enumerate() {
                 let signal = terminals.meaning(self.bank.raw(*row));
                 signal
                     .filter(|_| active >> i & 1 != 0)
                     .into_iter()
                     .for_each(|it| inputs.insert(it));
+            }
+        }
+        for signal in &wiring.machine_inputs {
+            if switch(*signal).is_some_and(|switch| self.is_switched(switch)) {
+                inputs.insert(*signal);
             }
         }
         if let Some(words) = &wiring.input_words {
@@ -98,6 +138,16 @@ impl Shown {
     /// Does it show as active, given the signals?
     pub(super) fn is_active(self, outputs: Outputs) -> bool {
         outputs.has(self.signal) != self.inverted
+    }
+}
+
+/// The switch of a machine that moves `signal`.
+fn switch(signal: Input) -> Option<Switch> {
+    match signal {
+        Input::HomeSwitch => Some(Switch::Home),
+        Input::LimitPos => Some(Switch::PositiveLimit),
+        Input::LimitNeg => Some(Switch::NegativeLimit),
+        _ => None,
     }
 }
 

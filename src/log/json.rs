@@ -142,6 +142,31 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Stops => ("stops", json!({})),
         Change::Coasts => ("coasts", json!({})),
         Change::Stands { at } => ("stands", json!({"at": at})),
+        Change::Limit { forward, soft } => ("limit", json!({"positive": forward, "soft": soft})),
+        Change::Hits { at } => ("hits", json!({"at": at})),
+        Change::Deviates => ("deviates", json!({})),
+        Change::Homes { method } => ("homing", json!({"method": method})),
+        Change::Seeks { method, step, mrpm } => {
+            let (rpm, until) = (text::rpm(*mrpm), why::until(step.until));
+            ("homing_seeks", json!({"method": method, "rpm": rpm, "until": until}))
+        }
+        Change::Finds { method, step, at } => {
+            let (until, then) = (why::until(step.until), step.then.name());
+            ("homing_finds", json!({"method": method, "until": until, "at": at, "then": then}))
+        }
+        Change::FindsLimit { method, forward, at } => {
+            ("homing_limit", json!({"method": method, "positive": forward, "at": at}))
+        }
+        Change::Refines { method, forward } => {
+            ("homing_refines", json!({"method": method, "forward": forward}))
+        }
+        Change::Origin { method, at } => ("homing_origin", json!({"method": method, "at": at})),
+        Change::Homed { method, position } => {
+            ("homed", json!({"method": method, "position": position}))
+        }
+        Change::HomingLost { method, why } => {
+            ("homing_lost", json!({"method": method, "why": why.name()}))
+        }
         Change::Ignored { action, why } => {
             ("ignored", json!({"action": action.name(), "why": why::ignored(*why)}))
         }

@@ -6,7 +6,7 @@ use crate::drive::Drive;
 use crate::event::{Change, Event, Transaction, What};
 use crate::serial::Mode;
 use crate::wire::hex::to_hex;
-use crate::words::Word;
+use crate::words::{Then, Word};
 
 /// Rows of one transaction that are told; the rest is counted.
 const ROWS_TOLD: usize = 6;
@@ -162,6 +162,40 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::Stops => "stops".into(),
         Change::Coasts => "runs out, the servo is off".into(),
         Change::Stands { at } => format!("stands at {at}"),
+        Change::Limit { forward, soft } => {
+            let kind = if *soft { "soft limit" } else { "limit switch" };
+            format!("stopped by the {} {kind}", side(*forward))
+        }
+        Change::Hits { at } => format!("runs against a hard stop at {at}"),
+        Change::Deviates => "is farther behind than its parameters allow".into(),
+        Change::Homes { method } => format!("homing method {method} begins"),
+        Change::Seeks { method, step, mrpm } => {
+            let (until, rpm) = (why::until(step.until), rpm(*mrpm));
+            format!("homing method {method}: at {rpm} rpm until {until}")
+        }
+        Change::Finds { method, step, at } => {
+            let until = why::until(step.until);
+            let then = match step.then {
+                Then::Ramp => "slowing",
+                Then::Keep => "going on",
+                Then::Origin => "the origin",
+            };
+            format!("homing method {method}: {until} at {at}, {then}")
+        }
+        Change::FindsLimit { method, forward, at } => {
+            format!("homing method {method}: {} limit at {at}, slowing", side(*forward))
+        }
+        Change::Refines { method, forward } => {
+            let way = if *forward { "forward" } else { "backward" };
+            format!("homing method {method}: {way} to the next index pulse")
+        }
+        Change::Origin { method, at } => format!("homing method {method}: origin at {at}"),
+        Change::Homed { method, position } => {
+            format!("homing method {method} done, position {position}")
+        }
+        Change::HomingLost { method, why } => {
+            format!("homing method {method} ended without an origin: {}", why.about())
+        }
         Change::Ignored { action, why } => {
             format!("{} ignored: {}", action.name(), why::ignored(*why))
         }
@@ -171,6 +205,10 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             format!("terminal {name} {}", if *signal { "on" } else { "off" })
         }
     }
+}
+
+fn side(forward: bool) -> &'static str {
+    if forward { "positive" } else { "negative" }
 }
 
 /// Thousandths of a revolution a minute in revolutions a minute.

@@ -6,7 +6,7 @@ use crate::event::Ignored;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
-use crate::words::{Cause, Detail, Refusal};
+use crate::words::{Cause, Detail, Edge, Refusal, Until, Word};
 
 /// `range 0..6000`, `0x1234 is not mapped`.
 pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
@@ -51,6 +51,10 @@ pub fn ignored(why: Ignored) -> &'static str {
         Ignored::PowerOff => "the servo is off",
         Ignored::Held => "a stop input is active",
         Ignored::Moving => "the axis moves",
+        Ignored::Homing => "the axis looks for its origin",
+        Ignored::Limit => "there is a limit in that direction",
+        Ignored::Starter => "the parameter says that something else starts it, or nothing does",
+        Ignored::NoMeaning => "a parameter holds a number that stands for nothing",
     }
 }
 
@@ -78,5 +82,17 @@ pub fn header(why: BadHeader) -> String {
     match why {
         BadHeader::Protocol(id) => format!("protocol {id} is not Modbus; is this serial framing?"),
         BadHeader::Length(len) => format!("a length of {len} is not possible"),
+    }
+}
+
+/// What a homing step waits for.
+pub fn until(until: Until) -> String {
+    let edge =
+        |edge: Edge| format!("{} {}", edge.signal.name(), if edge.on { "on" } else { "off" });
+    match until {
+        Until::Edge(it) => edge(it),
+        Until::Index(None) => "an index pulse".into(),
+        Until::Index(Some(it)) => format!("an index pulse after {}", edge(it)),
+        Until::Collision => "a hard stop".into(),
     }
 }

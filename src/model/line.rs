@@ -78,7 +78,7 @@ impl<T: Copy> Coded<T> {
 }
 
 /// The code in `value`: the whole of it, or one hex digit.
-fn code_in(value: i64, digit: Option<u8>) -> i64 {
+pub(super) fn code_in(value: i64, digit: Option<u8>) -> i64 {
     digit.map_or(value, |digit| value >> (4 * digit) & 0xF)
 }
 
@@ -229,7 +229,7 @@ fn within(
 }
 
 /// Does each code have a value of the row, or of one hex digit of it, and the factory value a code?
-fn coded<T>(
+pub(super) fn coded<T>(
     row: Option<RowId>,
     digit: Option<u8>,
     codes: &BTreeMap<i64, T>,

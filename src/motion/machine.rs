@@ -3,7 +3,7 @@
 //! Pure geometry: it says what is active at a position and when a trajectory gets to the next mark. What
 //! a drive does about it is not known here.
 
-use super::{Trajectory, Way};
+use super::{State, Trajectory, Way};
 use crate::time::Instant;
 
 /// What stands along one axis, in counts.
@@ -87,6 +87,11 @@ impl Machine {
         self.span(switch).is_some_and(|[from, to]| from <= position && position < to)
     }
 
+    /// Is `switch` there at all?
+    pub fn has(&self, switch: Switch) -> bool {
+        self.span(switch).is_some()
+    }
+
     /// The next change of `switch` after `after`.
     pub fn next_edge(&self, switch: Switch, of: &Trajectory, after: Instant) -> Option<Edge> {
         let [from, to] = self.span(switch)?;
@@ -113,6 +118,15 @@ impl Machine {
         };
         let pulses = [pulse(low, Way::Falling), pulse(high, Way::Rising)];
         pulses.into_iter().flatten().min_by_key(|it| it.at)
+    }
+
+    /// Where the axis is if it is told to be at `state`: a hard stop holds it.
+    pub fn hold(&self, state: State) -> State {
+        match self.hard_stop {
+            Some([low, _]) if state.position < low as f64 => State::at_rest(low as f64),
+            Some([_, high]) if state.position > high as f64 => State::at_rest(high as f64),
+            _ => state,
+        }
     }
 
     /// When the axis next runs against a hard stop: the first instant after `after` at which the

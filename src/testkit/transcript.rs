@@ -4,7 +4,7 @@
 //! model acme-s1.yaml unit 1            # more such lines put more drives on the line
 //! line 19200 8N1 strict                # optional; `ascii`, `strict`
 //! option crc_error exception           # optional, for the model line above
-//! set C003 20                          # optional, likewise; also `switches 5`, `terminal I1`, `position 5000`
+//! set C003 20                          # optional, likewise; also `switches 5`, `terminal I1`, `machine {home: [50, 60]}`
 //!
 //! > 03 1003 0001                       # unit and checksum are added; `>2 03 ...` asks unit 2
 //! < 03 02 0014

@@ -7,6 +7,7 @@ words! {
     Action {
         QuickStop "quick_stop" "stand at once",
         Stop "stop" "slow down to a standstill, with the deceleration that was read when the motion started",
+        HomeStart "home_start" "look for the origin; ignored while the axis moves",
         MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set",
         RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; ignored while the axis moves",
         Enable "enable" "switch the power stage on",

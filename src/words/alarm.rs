@@ -11,6 +11,9 @@ words! {
         Overload "overload" "too much torque for too long",
         Encoder "encoder" "no or implausible feedback",
         PositionDeviation "position_deviation" "command and feedback too far apart",
+        HomingLimitPos "homing_limit_pos" "the positive limit ended the way of a homing",
+        HomingLimitNeg "homing_limit_neg" "the negative limit ended the way of a homing",
+        HomingTime "homing_time" "no origin within `home.time_limit`",
         Forced "forced" "input `alarm_force` is active",
     }
 }

@@ -6,6 +6,7 @@
 mod action;
 mod alarm;
 mod cause;
+mod homing;
 mod quantity;
 mod refusal;
 mod setting;
@@ -14,6 +15,10 @@ mod signal;
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
 pub use cause::Cause;
+pub use homing::{
+    Edge, HomeEnd, HomeStarter, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS, Method,
+    OriginPosition, OriginStop, Pace, SoftLimitRule, Step, Steps, Then, Until,
+};
 pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
 pub use setting::Setting;

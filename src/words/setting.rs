@@ -17,6 +17,16 @@ words! {
         MoveStartSpeed "move.start_speed" "speed that a move takes at once and drops at once",
         MoveAccel "move.accel" "how a move speeds up",
         MoveDecel "move.decel" "how a move slows down",
+        HomeFast "home.speed_fast" "speed of fast homing steps, and of the way on from the origin",
+        HomeSlow "home.speed_slow" "speed of slow homing steps",
+        HomeAccel "home.accel" "how a homing changes its speed; a time is that up to `home.speed_fast`",
+        HomeWay "home.way" "how far to go on from the origin",
+        HomeCoordinate "home.coordinate" "what the position register is to say when a homing is over",
+        HomeCollision "home.collision" "counts that a hard stop holds the axis back until a homing takes it for the end of its way",
+        HomeTimeLimit "home.time_limit" "most time that a homing may take; 0 is no limit",
+        SoftLimitPos "limit.soft_pos" "greatest position, where soft limits are in force",
+        SoftLimitNeg "limit.soft_neg" "least position, where soft limits are in force",
+        Deviation "limit.deviation" "counts that the axis may be behind before alarm `position_deviation`",
     }
 }
 
@@ -26,16 +36,27 @@ impl Setting {
     /// A ramp is an acceleration, or the time from standstill (a move: from its start speed) to the speed.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
-            Self::MoveTarget => &[Dimension::Position],
-            Self::RunSpeed | Self::JogSpeed | Self::MoveSpeed | Self::MoveStartSpeed => {
-                &[Dimension::Speed]
-            }
+            Self::MoveTarget
+            | Self::HomeWay
+            | Self::HomeCoordinate
+            | Self::HomeCollision
+            | Self::SoftLimitPos
+            | Self::SoftLimitNeg
+            | Self::Deviation => &[Dimension::Position],
+            Self::RunSpeed
+            | Self::JogSpeed
+            | Self::MoveSpeed
+            | Self::MoveStartSpeed
+            | Self::HomeFast
+            | Self::HomeSlow => &[Dimension::Speed],
+            Self::HomeTimeLimit => &[Dimension::Time],
             Self::RunAccel
             | Self::RunDecel
             | Self::JogAccel
             | Self::JogDecel
             | Self::MoveAccel
-            | Self::MoveDecel => &[Dimension::Acceleration, Dimension::Time],
+            | Self::MoveDecel
+            | Self::HomeAccel => &[Dimension::Acceleration, Dimension::Time],
         }
     }
 }

@@ -13,6 +13,10 @@ words! {
         QuickStop "quick_stop" "level: the axis stands at once and starts nothing while active",
         JogPos "jog_pos" "level: the axis goes at `jog.speed` while active; with `jog_neg` at the same time it stops",
         JogNeg "jog_neg" "level: the same in the negative direction",
+        HomeSwitch "home_switch" "level: the home switch, or another mark that a homing looks for",
+        LimitPos "limit_pos" "level: the positive limit; no motion goes on in the positive direction",
+        LimitNeg "limit_neg" "level: the negative limit; no motion goes on in the negative direction",
+        HomeStart "home_start" "rising edge: look for the origin",
     }
 }
 
@@ -27,6 +31,11 @@ words! {
         Moving "moving" "a motion is under way, from its start to the standstill",
         InPosition "in_position" "the axis stands where its last move was to end; off from the start of any motion",
         ZeroSpeed "zero_speed" "the speed is 0",
+        HomeDone "home_done" "the origin was found; off at power-on and from the start of a homing",
+        AtLimitPos "limit_pos" "signal `limit_pos` is active",
+        AtLimitNeg "limit_neg" "signal `limit_neg` is active",
+        BeyondPos "beyond_soft_pos" "the position is more than `limit.soft_pos`, and soft limits are in force",
+        BeyondNeg "beyond_soft_neg" "the position is less than `limit.soft_neg`, and soft limits are in force",
     }
 }
 

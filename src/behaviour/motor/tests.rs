@@ -1,6 +1,8 @@
 //! What holds for an axis whatever it is told.
 
 use super::*;
+use crate::motion::Switch;
+use crate::words::Input;
 use proptest::prelude::*;
 
 const HOW: Move = Move { start_speed: 0.0, speed: 4000.0, accel: 20_000.0, decel: 10_000.0 };
@@ -45,9 +47,23 @@ struct Bench {
     told: Vec<(Instant, Stage)>,
 }
 
+/// Machines with limits, hard stops, both or neither.
+fn machines() -> impl Strategy<Value = Machine> {
+    let side = || prop::option::of((100i64..2000, 0i64..300));
+    (side(), side(), any::<bool>()).prop_map(|(below, above, stops)| Machine {
+        negative_limit: below.map(|(at, _)| -at),
+        positive_limit: above.map(|(at, _)| at),
+        hard_stop: stops.then(|| {
+            let far = |side: Option<(i64, i64)>| side.map_or(2500, |(at, more)| at + more);
+            [-far(below), far(above)]
+        }),
+        ..Machine::default()
+    })
+}
+
 impl Bench {
-    fn new() -> Self {
-        let motor = Motor::standing(Instant::ZERO, 0.0, COAST);
+    fn new(machine: Machine) -> Self {
+        let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine);
         let wants = Wants { power: true, ..Wants::default() };
         let mut bench = Self { motor, wants, now: Instant::ZERO, told: Vec::new() };
         bench.follow();
@@ -55,50 +71,72 @@ impl Bench {
     }
 
     fn follow(&mut self) {
-        let (now, told) = (self.now, &mut self.told);
-        self.motor.follow(now, self.wants, &mut |stage| told.push((now, stage)));
+        let position = self.motor.state(self.now).position;
+        let mut switches = Inputs::default();
+        for (switch, signal) in
+            [(Switch::PositiveLimit, Input::LimitPos), (Switch::NegativeLimit, Input::LimitNeg)]
+        {
+            if self.motor.machine().is_active(switch, position) {
+                switches.insert(signal);
+            }
+        }
+        self.motor.follow(self.now, Wants { switches, ..self.wants });
+        self.hear();
+    }
+
+    fn hear(&mut self) {
+        while let Some(stage) = self.motor.poll_stage() {
+            self.told.push((self.now, stage));
+        }
     }
 
     fn advance_to(&mut self, now: Instant) {
         while let Some(at) = self.motor.deadline().filter(|at| *at <= now) {
             self.now = at;
-            let told = &mut self.told;
-            self.motor.advance(at, &mut |stage| told.push((at, stage)));
+            if self.motor.take_edge(at) {
+                self.follow();
+            }
+            self.motor.advance(at);
             self.follow();
         }
         self.now = now;
     }
 
     fn obey(&mut self, order: Order) {
-        let (now, told) = (self.now, &mut self.told);
-        let tell = &mut |stage| told.push((now, stage));
+        let now = self.now;
         // Whether it may start is another test's.
         let _ = match order {
             Order::Follow { power, stop, quick_stop, jog } => {
                 let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
-                self.wants = Wants { power, stop, quick_stop, jog };
+                self.wants = Wants { power, stop, quick_stop, jog, ..self.wants };
                 Ok(())
             }
             Order::Move { target, interrupt } => {
-                self.motor.start_move(now, |here| here + target, HOW, interrupt, tell)
+                self.motor.start_move(now, |here| here + target, HOW, interrupt)
             }
-            Order::Run { speed } => self.motor.start_run(now, ramp(speed), tell),
+            Order::Run { speed } => self.motor.start_run(now, ramp(speed)),
             Order::Stop => {
-                self.motor.stop(now, tell);
+                self.motor.stop(now);
                 Ok(())
             }
             Order::QuickStop => {
-                self.motor.quick_stop(now, tell);
+                self.motor.quick_stop(now);
                 Ok(())
             }
         };
+        self.hear();
         self.follow();
     }
 }
 
 /// The whole story, looked at every so many milliseconds.
-fn play(orders: &[(u64, Order)], step_ms: u64, mut look: impl FnMut(&Bench)) -> Bench {
-    let mut bench = Bench::new();
+fn play(
+    machine: Machine,
+    orders: &[(u64, Order)],
+    step_ms: u64,
+    mut look: impl FnMut(&Bench),
+) -> Bench {
+    let mut bench = Bench::new(machine);
     let mut ms = 0;
     let end = (3000, Order::Stop);
     for (wait, order) in orders.iter().chain([&end]) {
@@ -116,18 +154,29 @@ fn play(orders: &[(u64, Order)], step_ms: u64, mut look: impl FnMut(&Bench)) -> 
 
 proptest! {
     #[test]
-    fn slices_of_time_make_no_difference(orders in orders(false), step in 1u64..50) {
-        let (seldom, often) = (play(&orders, u64::MAX / 2, |_| {}), play(&orders, step, |_| {}));
+    fn slices_of_time_make_no_difference(
+        machine in machines(), orders in orders(false), step in 1u64..50,
+    ) {
+        let seldom = play(machine, &orders, u64::MAX / 2, |_| {});
+        let often = play(machine, &orders, step, |_| {});
         prop_assert_eq!(seldom.told, often.told);
         prop_assert_eq!(seldom.motor, often.motor);
     }
 
     #[test]
-    fn it_goes_nowhere_without_passing_what_lies_between(orders in orders(false)) {
+    fn it_goes_nowhere_without_passing_what_lies_between(
+        machine in machines(), orders in orders(false),
+    ) {
         let mut last: Option<(Instant, State)> = None;
         let mut worst = 0.0f64;
-        play(&orders, 1, |bench| {
+        play(machine, &orders, 1, |bench| {
             let state = bench.motor.state(bench.now);
+            if let Some([low, high]) = machine.hard_stop {
+                worst = worst.max(low as f64 - state.position).max(state.position - high as f64);
+            }
+            if bench.motor.deadline().is_some_and(|at| at <= bench.now) {
+                worst = f64::INFINITY;
+            }
             if let Some((at, was)) = last {
                 let most = 4000.0 * bench.now.since(at).as_secs_f64();
                 worst = worst.max((state.position - was.position).abs() - most);
@@ -142,7 +191,7 @@ proptest! {
     fn the_speed_keeps_to_its_ramps(orders in orders(true)) {
         let mut last: Option<(Instant, f64)> = None;
         let mut worst = 0.0f64;
-        play(&orders, 1, |bench| {
+        play(Machine::default(), &orders, 1, |bench| {
             let speed = bench.motor.speed(bench.now);
             if let Some((at, was)) = last {
                 // To coast takes 200 ms from whatever speed, which is no steeper than the ramps here.
@@ -154,8 +203,10 @@ proptest! {
     }
 
     #[test]
-    fn without_power_or_held_it_comes_to_rest(orders in orders(false), held: bool) {
-        let mut bench = play(&orders, u64::MAX / 2, |_| {});
+    fn without_power_or_held_it_comes_to_rest(
+        machine in machines(), orders in orders(false), held: bool,
+    ) {
+        let mut bench = play(machine, &orders, u64::MAX / 2, |_| {});
         bench.obey(Order::Follow { power: held, stop: held, quick_stop: false, jog: 1 });
         let at = bench.now + Duration::from_millis(500);
         bench.advance_to(at);
@@ -175,13 +226,13 @@ proptest! {
 #[test]
 fn says_why_it_does_not_start() {
     let start = |wants: Wants, running: bool| {
-        let mut bench = Bench::new();
+        let mut bench = Bench::new(Machine::default());
         if running {
             bench.obey(Order::Run { speed: 1000.0 });
         }
         bench.wants = wants;
         bench.follow();
-        bench.motor.start_run(bench.now, ramp(5.0), &mut |_| {})
+        bench.motor.start_run(bench.now, ramp(5.0))
     };
     let ready = Wants { power: true, ..Wants::default() };
     assert_eq!(start(ready, false), Ok(()));

@@ -3,10 +3,12 @@
 //! These structs mirror the file key for key and decide nothing; `compile` resolves them. Every key
 //! that they accept changes something that a test can see.
 
+mod homing;
 mod line;
 mod row;
 mod wiring;
 
+pub use homing::*;
 pub use line::*;
 pub use row::*;
 pub use wiring::*;
@@ -60,6 +62,10 @@ pub struct RawModel {
     pub servo: RawServo,
     /// The axis, where something can move it.
     pub axis: Option<RawAxis>,
+    /// How the axis looks for its origin.
+    pub homing: Option<RawHoming>,
+    /// How limits stop the axis.
+    pub limits: Option<RawLimits>,
     /// Alarms that the drive can raise, by cause.
     #[serde(default)]
     pub alarms: BTreeMap<String, RawAlarm>,
@@ -157,10 +163,12 @@ pub const KEYS: &[&str] = &[
     "applies",
     "assumed",
     "at",
+    "at_limit",
     "axis",
     "base",
     "baud",
     "bits",
+    "by",
     "choices",
     "clears",
     "coast",
@@ -174,29 +182,43 @@ pub const KEYS: &[&str] = &[
     "enabled_at_power_on",
     "enabled_by",
     "fill",
+    "finish",
     "first",
     "format",
     "functions",
+    "go",
     "hold",
+    "homing",
     "id",
+    "index",
     "init",
     "inputs",
     "length_check",
+    "limit",
+    "limit_source",
+    "limits",
     "line",
     "lock",
     "long_access",
+    "machine",
     "manual",
     "max_read",
     "max_write",
+    "method",
+    "methods",
     "model",
     "modifiers",
     "monitor",
     "n",
     "name",
+    "no_steps",
     "normally_closed",
     "note",
+    "of_origin",
+    "on",
     "options",
     "outputs",
+    "position",
     "positions",
     "prefix",
     "products",
@@ -215,12 +237,19 @@ pub const KEYS: &[&str] = &[
     "signals",
     "silence",
     "sim",
+    "soft",
     "span",
+    "starter",
     "stations",
+    "steps",
+    "stop",
     "stride",
     "switches",
     "terminals",
+    "then",
+    "time_factor",
     "title",
+    "to",
     "triggers",
     "type",
     "unit",

@@ -24,6 +24,8 @@ pub struct RawSignals {
 pub struct RawInputs {
     /// Function number -> input signal; used by `terminals` and `words`.
     pub codes: BTreeMap<u16, String>,
+    /// Switches of the machine that reach the drive by a way of their own, not by one of `terminals`.
+    pub machine: Vec<String>,
     /// Physical input terminals.
     pub terminals: Option<RawTerminals>,
     /// Words in which bit n of word w stands for function number 16 w + n.

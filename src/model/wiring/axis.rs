@@ -6,7 +6,9 @@ use super::compile::Wirer;
 use crate::model::raw::{RawAxis, RawCounts};
 use crate::problem::{Path, Problem};
 use crate::units::Dimension;
-use crate::words::{Action, Input, Output, Quantity, Setting, Word};
+use crate::words::{
+    Action, AlarmCause, Input, Method, Output, Quantity, Setting, Steps, Until, Word,
+};
 
 /// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
 struct Kind {
@@ -17,7 +19,7 @@ struct Kind {
     takes: &'static [Setting],
 }
 
-const KINDS: [Kind; 3] = [
+const KINDS: [Kind; 4] = [
     Kind {
         name: "run",
         inputs: &[],
@@ -38,6 +40,21 @@ const KINDS: [Kind; 3] = [
         action: Some(Action::MoveStart),
         needs: &[Setting::MoveTarget, Setting::MoveSpeed],
         takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
+    },
+    Kind {
+        name: "homing",
+        inputs: &[Input::HomeStart],
+        action: Some(Action::HomeStart),
+        needs: &[],
+        takes: &[
+            Setting::HomeFast,
+            Setting::HomeSlow,
+            Setting::HomeAccel,
+            Setting::HomeWay,
+            Setting::HomeCoordinate,
+            Setting::HomeCollision,
+            Setting::HomeTimeLimit,
+        ],
     },
 ];
 
@@ -66,6 +83,7 @@ impl Wirer<'_> {
         if starter.is_none() {
             self.signals_without_motion(&inputs, &actions);
         }
+        self.homing_fits(&inputs, &actions);
         let Some(raw) = raw else { return };
         if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
             self.wiring.axis.counts_per_rev = counts;
@@ -124,10 +142,53 @@ impl Wirer<'_> {
         }
     }
 
+    /// A homing has a starter, a starter has a homing, and what shows or needs one has one.
+    fn homing_fits(&mut self, inputs: &[Input], actions: &[Action]) {
+        let input = inputs.contains(&Input::HomeStart);
+        let starts = input || actions.contains(&Action::HomeStart);
+        let homing = self.wiring.homing.is_some();
+        let signals = Path::root().key("signals");
+        if starts && !homing {
+            let what = "`home_start` is wired, and there is no `homing`";
+            self.problems.push(Problem::key(signals.clone(), what).advise("add `homing`"));
+        }
+        if homing && !starts {
+            let what = "`homing` changes nothing: nothing starts it";
+            let problem = Problem::key(Path::root().key("homing"), what);
+            self.problems.push(problem.advise("wire `home_start`, or leave it out"));
+        }
+        let methods = self.wiring.homing.iter().flat_map(|it| it.methods.values());
+        let looks = |method: &Method| {
+            let steps = [&method.steps, &method.at_limit, &method.on].into_iter();
+            steps.flat_map(Steps::iter).any(|step| match step.until {
+                Until::Edge(edge) | Until::Index(Some(edge)) => edge.signal == Input::HomeSwitch,
+                Until::Index(None) | Until::Collision => false,
+            })
+        };
+        let looked_for = methods.into_iter().any(looks);
+        let shown = self.is_shown(Output::HomeDone);
+        let useless = [
+            (Input::HomeSwitch.name(), inputs.contains(&Input::HomeSwitch) && !looked_for),
+            (Output::HomeDone.name(), shown && !homing),
+        ];
+        for (name, _) in useless.into_iter().filter(|(_, is)| *is) {
+            let what = format!("`{name}` changes nothing: no homing goes by it");
+            self.problems.push(Problem::key(signals.clone(), what).advise("leave it out"));
+        }
+        let deviation = self.wiring.axis.setting(Setting::Deviation).is_some();
+        if deviation && self.wiring.alarm(AlarmCause::PositionDeviation).is_none() {
+            let what =
+                "`limit.deviation` changes nothing: alarm `position_deviation` has no number";
+            let path = Path::root().key("quantities").key(Setting::Deviation.name());
+            self.problems.push(Problem::key(path, what).advise("add it to `alarms`"));
+        }
+    }
+
     /// What ends or shows a motion, where there is none.
     fn signals_without_motion(&mut self, inputs: &[Input], actions: &[Action]) {
         let path = Path::root().key("signals");
-        let ends = [Input::Stop, Input::QuickStop].into_iter().filter(|it| inputs.contains(it));
+        let ends = [Input::Stop, Input::QuickStop, Input::LimitPos, Input::LimitNeg];
+        let ends = ends.into_iter().filter(|it| inputs.contains(it));
         let orders = [Action::Stop, Action::QuickStop].into_iter();
         let orders = orders.filter(|it| actions.contains(it)).map(Word::name);
         let outputs = [Output::Moving, Output::InPosition, Output::ZeroSpeed].into_iter();
@@ -147,12 +208,13 @@ impl Wirer<'_> {
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
     }
 
-    fn inputs_wired(&self) -> Vec<Input> {
+    pub(super) fn inputs_wired(&self) -> Vec<Input> {
         let wiring = &self.wiring;
+        let machine = wiring.machine_inputs.iter().copied();
         let terminals = wiring.input_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
         let words = wiring.input_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
         let bits = wiring.input_bits.iter().flat_map(|(_, bits)| bits).map(|it| it.1);
-        terminals.chain(words).chain(bits).collect()
+        terminals.chain(words).chain(bits).chain(machine).collect()
     }
 
     fn actions_wired(&self) -> Vec<Action> {

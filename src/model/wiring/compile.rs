@@ -31,8 +31,10 @@ pub(in crate::model) fn compile(
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
     wirer.line(&raw.line);
     wirer.servo(raw);
-    wirer.axis(raw.axis.as_ref());
+    raw.limits.iter().for_each(|limits| wirer.limits(limits));
+    raw.homing.iter().for_each(|homing| wirer.homing(homing));
     wirer.alarms(raw);
+    wirer.axis(raw.axis.as_ref());
     wirer.wiring
 }
 
@@ -64,6 +66,10 @@ impl Wirer<'_> {
             wirer.word::<Input>(name, "input signal", path)
         });
         self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
+        for (i, name) in raw.machine.iter().enumerate() {
+            let signal = self.word::<Input>(name, "switch", &path.key("machine").index(i));
+            self.wiring.machine_inputs.extend(signal);
+        }
         if let Some(raw) = &raw.terminals {
             let path = path.key("terminals");
             self.monitor(raw, &path, Shows::InputTerminals);

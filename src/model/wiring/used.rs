@@ -1,7 +1,7 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
 use super::Counts;
-use super::{Reaction, Wiring};
+use super::{Homing, Reaction, Wiring};
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
 use crate::model::{Applies, RowId};
@@ -18,7 +18,11 @@ pub(in crate::model) fn check_inert(
     let mut told: Vec<&Path> = Vec::new();
     for ((id, row), path) in rows.map.rows().zip(&rows.paths) {
         let wired = used[usize::from(id.0)];
-        let waits = row.applies != Applies::Now && wiring.reaction(id) != Reaction::Line;
+        // What a homing goes by is read when it starts, and that is at a standstill.
+        let at_stop = row.applies == Applies::AtStop
+            && wiring.homing.iter().flat_map(Homing::rows).any(|it| it == id);
+        let at_once = row.applies == Applies::Now || at_stop;
+        let waits = !at_once && wiring.reaction(id) != Reaction::Line;
         if wired && waits && !told.contains(&path) {
             told.push(path);
             let what =
@@ -53,6 +57,8 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
         mark(row);
     }
     wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
+    wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
+    wiring.limits.rows().for_each(&mut mark);
     for (i, shows) in wiring.shows.iter().enumerate() {
         if shows.is_some() || wiring.reactions[i] != Reaction::None {
             mark(RowId(i as u16));

@@ -2,7 +2,9 @@
 
 use super::Failure;
 use super::script::{Check, DriveLine, Script, Step};
-use crate::bench::{BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, match_line};
+use crate::bench::{
+    BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, machine, match_line,
+};
 use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
@@ -47,7 +49,9 @@ fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
         set: drive.set.clone(),
         switches: drive.switches,
         terminals: drive.terminals.clone(),
-        position: drive.position,
+        machine: machine(&drive.machine).map_err(|problems| problems[0].what.clone())?,
+        start: drive.machine.start.into(),
+        position: drive.machine.position.into(),
     };
     Device::new(model, &spec).map_err(|problems| problems[0].what.clone())
 }

@@ -1,6 +1,8 @@
 //! The text of a transcript, line by line, as steps.
 
 use super::Failure;
+use crate::bench::raw::{KEYS, RawMachine};
+use crate::problem::{Path, Problem, section};
 use crate::serial::Settings;
 use crate::testkit::hex;
 use crate::time::{Duration, parse_duration};
@@ -39,8 +41,8 @@ pub struct DriveLine {
     pub switches: Option<u8>,
     /// Input terminals with a signal.
     pub terminals: Vec<String>,
-    /// What the position register says.
-    pub position: i64,
+    /// The machine on its axis.
+    pub machine: RawMachine,
 }
 
 /// One step.
@@ -153,12 +155,27 @@ impl Script {
             ("switches", [value]) => drive.switches = Some(number_of(value)?),
             ("terminal", [name]) => drive.terminals.push((*name).into()),
             ("position", [value]) => {
-                drive.position =
-                    parse_integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
+                let position = parse_integer(value).and_then(|it| it.try_into().ok());
+                drive.machine.position = position.ok_or(format!("`{value}` is no position"))?;
+            }
+            ("machine", _) => {
+                let position = drive.machine.position;
+                drive.machine = RawMachine { position, ..machine(rest)? };
             }
             _ => return Err(format!("`{word}` begins no line of a transcript")),
         }
         Ok(())
+    }
+}
+
+/// A machine as a bench has it, on one line.
+fn machine(text: &str) -> Result<RawMachine, String> {
+    let value = serde_yaml::from_str(text).map_err(|error| error.to_string())?;
+    let mut problems = Vec::new();
+    let machine = section::read(&value, &Path::root(), KEYS, &mut problems);
+    match (machine, problems.first()) {
+        (Some(machine), None) => Ok(machine),
+        (_, problem) => Err(problem.map(Problem::to_string).unwrap_or_default()),
     }
 }
 

@@ -1,0 +1,152 @@
+//! What will happen to an axis by itself, and when: solved for whenever it gets another trajectory.
+
+use super::{Motor, Phase, Stage};
+use crate::motion::{IndexPulse, Switch, Way};
+use crate::time::Instant;
+
+/// What will happen to an axis that is left alone.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Due {
+    /// A switch changes.
+    edge: Option<Instant>,
+    /// It runs against a hard stop.
+    hit: Option<Instant>,
+    /// It comes off a hard stop.
+    leave: Option<Instant>,
+    /// It has been pressed against a hard stop as far as a homing step waits for.
+    collision: Option<Instant>,
+    /// It should be farther from where it is than is allowed.
+    deviation: Option<Instant>,
+    /// It gets beyond a soft limit.
+    soft: Option<Instant>,
+    /// It passes an index mark that a homing step waits for.
+    index: Option<IndexPulse>,
+    /// Its trajectory is over.
+    end: Option<Instant>,
+    /// The time for a homing is over.
+    time: Option<Instant>,
+}
+
+impl Motor {
+    /// When something happens to it by itself.
+    pub fn deadline(&self) -> Option<Instant> {
+        let Due { edge, hit, leave, collision, deviation, soft, index, end, time } = &self.due;
+        let index = index.map(|it| it.at);
+        let all = [*edge, *hit, *leave, *collision, *deviation, *soft, index, *end, *time];
+        all.into_iter().flatten().min()
+    }
+
+    /// Has a switch of the machine changed up to `now`? Asked once for each time; whoever knows what the
+    /// switches are wired to looks at them then, and before [`Motor::advance`].
+    pub fn take_edge(&mut self, now: Instant) -> bool {
+        let due = take(&mut self.due.edge, now);
+        if due {
+            self.due.edge = self.next_edge(now);
+        }
+        due
+    }
+
+    /// Lets time pass up to `now`, which is not later than the deadline.
+    pub fn advance(&mut self, now: Instant) {
+        while self.happen(now) {}
+    }
+
+    /// Finds out again what lies ahead.
+    pub(super) fn look_ahead(&mut self, now: Instant) {
+        let hold = |side| self.pressed_at(side, now);
+        let wait = self.homing.as_ref().map(|it| it.waits_for()).unwrap_or_default();
+        self.due = Due {
+            edge: self.next_edge(now),
+            hit: self.machine.next_hit(&self.trajectory, now).map(|it| it.at),
+            leave: wait.limits_by_stop.then(|| self.next_leave(now)).flatten(),
+            collision: wait.collision.and_then(hold),
+            deviation: self.wants.deviation.and_then(hold),
+            soft: self.wants.soft_limits.and_then(|[low, high]| {
+                let rising = self.trajectory.crossing(beyond(high), Way::Rising, now);
+                let falling = self.trajectory.crossing(low as f64, Way::Falling, now);
+                [rising, falling].into_iter().flatten().min()
+            }),
+            index: wait.index.and_then(|index| {
+                let way = if index.forward { Way::Rising } else { Way::Falling };
+                self.next_index(now, index.marks, way)
+            }),
+            end: self.trajectory.end().filter(|_| self.is_moving()),
+            time: wait.until,
+        };
+    }
+
+    /// The first thing that is due happens. Was there any?
+    fn happen(&mut self, now: Instant) -> bool {
+        let due = &mut self.due;
+        if take(&mut due.hit, now) {
+            self.told.push_back(Stage::Hits(self.position(now)));
+            self.home_look(now);
+        } else if take(&mut due.leave, now) {
+            self.home_look(now);
+        } else if take(&mut due.collision, now) {
+            self.home_found(now, self.position(now));
+        } else if let Some(pulse) = due.index.filter(|it| it.at <= now) {
+            due.index = None;
+            self.home_found(now, pulse.mark);
+        } else if take(&mut due.deviation, now) {
+            self.told.push_back(Stage::Deviates);
+        } else if take(&mut due.soft, now) {
+            self.obey_limits(now);
+        } else if take(&mut due.end, now) {
+            self.end(now);
+        } else if take(&mut due.time, now) {
+            self.home_late(now);
+        } else {
+            return false;
+        }
+        true
+    }
+
+    fn end(&mut self, now: Instant) {
+        if self.is_homing() {
+            return self.home_stands(now);
+        }
+        self.in_position = self.phase == Phase::Moving;
+        self.stand(now);
+    }
+
+    /// Nothing is under way any more.
+    pub(super) fn stand(&mut self, now: Instant) {
+        self.phase = Phase::Standing;
+        self.look_ahead(now);
+        self.told.push_back(Stage::Stands(self.position(now)));
+    }
+
+    fn next_edge(&self, now: Instant) -> Option<Instant> {
+        let switches = [Switch::Home, Switch::NegativeLimit, Switch::PositiveLimit];
+        let edge = |switch| self.machine.next_edge(switch, &self.trajectory, now).map(|it| it.at);
+        switches.into_iter().filter_map(edge).min()
+    }
+
+    /// When the trajectory gets `counts` beyond the hard stop that holds the axis.
+    fn pressed_at(&self, counts: i64, now: Instant) -> Option<Instant> {
+        let [low, high] = self.machine.hard_stop?;
+        let rising = beyond(high.saturating_add(counts));
+        let rising = self.trajectory.crossing(rising, Way::Rising, now);
+        let falling = low.saturating_sub(counts) as f64;
+        let falling = self.trajectory.crossing(falling, Way::Falling, now);
+        [rising, falling].into_iter().flatten().min()
+    }
+
+    fn next_leave(&self, now: Instant) -> Option<Instant> {
+        let [low, high] = self.machine.hard_stop?;
+        let falling = self.trajectory.crossing(high as f64, Way::Falling, now);
+        let rising = self.trajectory.crossing(beyond(low), Way::Rising, now);
+        [rising, falling].into_iter().flatten().min()
+    }
+}
+
+/// The first position that is more than `mark`.
+fn beyond(mark: i64) -> f64 {
+    (mark as f64).next_up()
+}
+
+/// Is `due` over at `now`? It is no more then.
+fn take(due: &mut Option<Instant>, now: Instant) -> bool {
+    due.take_if(|at| *at <= now).is_some()
+}

@@ -1,0 +1,375 @@
+//! Homing: the steps of a method one after the other, until one of them finds the origin.
+//!
+//! A step goes in one direction until a switch changes, an index pulse comes or a hard stop holds the axis. It sees
+//! switches as the drive does, so it doesn't matter whether a terminal, a master or the machine moves them. What the
+//! position register says of the origin is not decided here.
+
+use super::limits::limit;
+use super::{Motor, Phase, Stage};
+use crate::event::Ignored;
+use crate::motion::{Index, IndexPulse, Machine, Move, State, Trajectory, Way};
+use crate::time::{Duration, Instant};
+use crate::words::{
+    Edge, HomeEnd, IndexRule, Input, Inputs, LimitRule, LimitSource, Method, OriginStop, Pace,
+    Step, Steps, Then, Until,
+};
+
+/// Everything that a homing goes by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HomeOrder {
+    /// The steps.
+    pub method: Method,
+    /// Counts per second.
+    pub fast: f64,
+    /// Counts per second.
+    pub slow: f64,
+    /// Slope of all changes of speed, counts per second squared.
+    pub accel: f64,
+    /// What a limit on the way means.
+    pub limit: LimitRule,
+    /// What tells that there is one.
+    pub source: LimitSource,
+    /// Is the origin refined by an index pulse?
+    pub index: IndexRule,
+    /// Index marks, where the machine has none of its own.
+    pub marks: Index,
+    /// How it stands at the origin.
+    pub stop: OriginStop,
+    /// Counts to go on from the origin.
+    pub way: i64,
+    /// Counts of pressing that make a collision.
+    pub collision: i64,
+    /// Most time that it may take.
+    pub time_limit: Option<Duration>,
+}
+
+/// A homing under way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Homing {
+    order: HomeOrder,
+    /// The steps that are being taken.
+    steps: Steps,
+    at: usize,
+    /// No step has been finished, and no limit met.
+    fresh: bool,
+    doing: Doing,
+    /// The switches as the last look found them.
+    seen: Inputs,
+    origin: i64,
+    until: Option<Instant>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Doing {
+    /// On the way; for an index pulse after an edge: has the edge come?
+    Seeking { armed: bool },
+    /// Slowing down before the next step.
+    Braking,
+    /// Standing at a limit until time is over.
+    Stuck,
+    /// Looking for the index pulse that refines the origin.
+    Refining { forward: bool },
+    /// On the way from the origin to where it ends.
+    Ending,
+}
+
+/// What a homing waits for that only the trajectory can tell.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Waits {
+    pub(super) index: Option<WaitsForIndex>,
+    pub(super) collision: Option<i64>,
+    pub(super) limits_by_stop: bool,
+    pub(super) until: Option<Instant>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WaitsForIndex {
+    pub(super) forward: bool,
+    pub(super) marks: Index,
+}
+
+impl Homing {
+    fn step(&self) -> Option<Step> {
+        self.steps.get(self.at)
+    }
+
+    /// The direction in which it goes, and whether it goes at all.
+    fn heading(&self) -> Option<bool> {
+        match self.doing {
+            Doing::Seeking { .. } => self.step().map(|step| step.forward),
+            Doing::Refining { forward } => Some(forward),
+            Doing::Braking | Doing::Stuck | Doing::Ending => None,
+        }
+    }
+
+    pub(super) fn waits_for(&self) -> Waits {
+        let step = self.step().filter(|_| matches!(self.doing, Doing::Seeking { .. }));
+        let index = match (self.doing, step.map(|step| step.until)) {
+            (Doing::Refining { .. }, _) => true,
+            (Doing::Seeking { armed }, Some(Until::Index(_))) => armed,
+            _ => false,
+        };
+        let marks = self.order.marks;
+        let forward = self.heading().filter(|_| index);
+        let collides = step.is_some_and(|step| step.until == Until::Collision);
+        Waits {
+            index: forward.map(|forward| WaitsForIndex { forward, marks }),
+            collision: collides.then_some(self.order.collision),
+            limits_by_stop: self.order.source != LimitSource::Switch,
+            until: self.until,
+        }
+    }
+}
+
+impl Motor {
+    /// Looks for the origin.
+    ///
+    /// # Errors
+    /// Why it does not start: without power, while held, or while it moves.
+    pub fn start_home(&mut self, now: Instant, order: HomeOrder) -> Result<(), Ignored> {
+        self.may_start(false)?;
+        let mut homing = Homing {
+            steps: order.method.steps,
+            at: 0,
+            fresh: true,
+            doing: Doing::Ending,
+            seen: Inputs::default(),
+            origin: 0,
+            until: order.time_limit.map(|time| now + time),
+            order,
+        };
+        let by = homing.order.method.by;
+        if by.is_some_and(|by| self.home_switches(now, homing.order.source).has(by)) {
+            homing.steps = homing.order.method.on;
+        }
+        self.decel = homing.order.accel;
+        self.homing = Some(Box::new(homing));
+        self.begin(now, Trajectory::halt(now, self.state(now)), Phase::Homing);
+        self.seek(now);
+        self.advance(now);
+        Ok(())
+    }
+
+    /// Looks whether a switch has changed.
+    pub(super) fn home_look(&mut self, now: Instant) {
+        let Some(source) = self.homing.as_ref().map(|it| it.order.source) else { return };
+        let switches = self.home_switches(now, source);
+        let Some(homing) = &mut self.homing else { return };
+        let before = std::mem::replace(&mut homing.seen, switches);
+        let changed =
+            |edge: Edge| before.has(edge.signal) != edge.on && switches.has(edge.signal) == edge.on;
+        let armed = matches!(homing.doing, Doing::Seeking { armed: true });
+        let step = homing.step().filter(|_| matches!(homing.doing, Doing::Seeking { .. }));
+        match step.map(|step| step.until) {
+            Some(Until::Edge(edge)) if changed(edge) => {
+                return self.home_found(now, self.position(now));
+            }
+            Some(Until::Index(Some(edge))) if changed(edge) && !armed => {
+                homing.doing = Doing::Seeking { armed: true };
+                self.look_ahead(now);
+            }
+            _ => {}
+        }
+        self.home_limit(now);
+    }
+
+    /// What the present step waits for is at `at`.
+    pub(super) fn home_found(&mut self, now: Instant, at: i64) {
+        let Some(homing) = &mut self.homing else { return };
+        if matches!(homing.doing, Doing::Refining { .. }) {
+            homing.origin = at;
+            self.told.push_back(Stage::Refined(at));
+            return self.home_end(now);
+        }
+        let Some(step) = homing.step() else { return };
+        homing.fresh = false;
+        self.told.push_back(Stage::Finds(step, at));
+        match step.then {
+            Then::Ramp => {
+                homing.at += 1;
+                homing.doing = Doing::Braking;
+                self.home_brake(now);
+            }
+            Then::Keep => {
+                homing.at += 1;
+                self.seek(now);
+            }
+            Then::Origin => {
+                homing.origin = at;
+                self.refine(now, step.forward);
+            }
+        }
+    }
+
+    /// The trajectory is over.
+    pub(super) fn home_stands(&mut self, now: Instant) {
+        let Some(homing) = &self.homing else { return };
+        match homing.doing {
+            Doing::Braking => self.seek(now),
+            Doing::Ending => {
+                let origin = homing.origin;
+                self.homing = None;
+                self.in_position = true;
+                self.told.push_back(Stage::Homed(origin));
+                self.stand(now);
+            }
+            Doing::Seeking { .. } | Doing::Stuck | Doing::Refining { .. } => {}
+        }
+    }
+
+    /// The time is over.
+    pub(super) fn home_late(&mut self, now: Instant) {
+        self.lose(HomeEnd::TimeLimit, true);
+        self.brake(now);
+    }
+
+    /// Something else takes the place of a homing.
+    pub(super) fn lose_origin(&mut self, why: HomeEnd) {
+        self.lose(why, false);
+    }
+
+    fn lose(&mut self, why: HomeEnd, alarm: bool) {
+        if let Some(homing) = self.homing.take() {
+            let forward = homing.heading().unwrap_or(self.forward);
+            self.told.push_back(Stage::Lost { why, forward, alarm });
+        }
+    }
+
+    /// Begins the present step. Without one the origin is here.
+    fn seek(&mut self, now: Instant) {
+        let here = self.position(now);
+        let Some(homing) = &mut self.homing else { return };
+        let Some(step) = homing.step() else {
+            homing.origin = here;
+            return self.home_end(now);
+        };
+        homing.doing = Doing::Seeking { armed: step.until == Until::Index(None) };
+        let speed = match step.pace {
+            Pace::Fast => homing.order.fast,
+            Pace::Slow => homing.order.slow,
+        };
+        let source = homing.order.source;
+        let speed = if step.forward { speed } else { -speed };
+        self.told.push_back(Stage::Seeks(step, speed));
+        self.home_go(now, self.state(now), speed);
+        let seen = self.home_switches(now, source);
+        if let Some(homing) = &mut self.homing {
+            homing.seen = seen;
+        }
+        self.home_limit(now);
+    }
+
+    /// Ends the present way if there is a limit ahead that it does not look for.
+    fn home_limit(&mut self, now: Instant) {
+        let at = self.position(now);
+        let Some(homing) = &mut self.homing else { return };
+        let Some(forward) = homing.heading() else { return };
+        let ahead = limit(forward);
+        if !homing.seen.has(ahead) {
+            return;
+        }
+        let wanted = Until::Edge(Edge { signal: ahead, on: true });
+        let seeking = matches!(homing.doing, Doing::Seeking { .. });
+        if seeking && homing.step().is_some_and(|step| step.until == wanted) {
+            // It stands there already.
+            return self.home_found(now, at);
+        }
+        if homing.order.limit == LimitRule::Alarm {
+            self.lose(HomeEnd::Limit, true);
+            return self.brake(now);
+        }
+        let turns = homing.fresh && !homing.order.method.at_limit.is_empty();
+        if !turns && homing.until.is_none() {
+            self.lose(HomeEnd::Limit, false);
+            return self.brake(now);
+        }
+        if turns {
+            (homing.steps, homing.at, homing.fresh) = (homing.order.method.at_limit, 0, false);
+        }
+        homing.doing = if turns { Doing::Braking } else { Doing::Stuck };
+        self.told.push_back(Stage::FindsLimit { forward, at });
+        self.home_brake(now);
+    }
+
+    /// Goes on from the origin for an index pulse, if there is one to look for.
+    fn refine(&mut self, now: Instant, forward: bool) {
+        let Some(homing) = &mut self.homing else { return };
+        let forward = match homing.order.index {
+            IndexRule::Back if homing.order.method.index => !forward,
+            IndexRule::Onward if homing.order.method.index => forward,
+            _ => return self.home_end(now),
+        };
+        homing.doing = Doing::Refining { forward };
+        let (from, slow) = (State::at_rest(homing.origin as f64), homing.order.slow);
+        self.told.push_back(Stage::Refines { forward });
+        self.home_go(now, from, if forward { slow } else { -slow });
+        self.home_limit(now);
+    }
+
+    /// The origin is found: goes to where the homing ends.
+    fn home_end(&mut self, now: Instant) {
+        let state = self.state(now);
+        let Some(homing) = &mut self.homing else { return };
+        homing.doing = Doing::Ending;
+        let HomeOrder { fast: speed, accel, way, stop, .. } = homing.order;
+        let origin = homing.origin;
+        let from = match stop {
+            OriginStop::AtOnce => State::at_rest(origin as f64),
+            OriginStop::Ramp => state,
+        };
+        let how = Move { start_speed: 0.0, speed, accel, decel: accel };
+        let trajectory = match way {
+            0 => Trajectory::stop(now, from, accel),
+            _ => Trajectory::to_position(now, from, origin.saturating_add(way), how),
+        };
+        self.begin(now, trajectory, Phase::Homing);
+    }
+
+    fn home_go(&mut self, now: Instant, from: State, speed: f64) {
+        let trajectory = Trajectory::to_speed(now, from, speed, self.decel, self.decel);
+        self.forward = speed >= 0.0;
+        self.begin(now, trajectory, Phase::Homing);
+    }
+
+    fn home_brake(&mut self, now: Instant) {
+        let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+        self.begin(now, trajectory, Phase::Homing);
+    }
+
+    /// The switches, as a homing that gets its limits from `source` sees them.
+    fn home_switches(&self, now: Instant, source: LimitSource) -> Inputs {
+        let position = self.state(now).position;
+        let at = |forward| {
+            let held = self.machine.hard_stop.is_some_and(|[low, high]| {
+                if forward { position >= high as f64 } else { position <= low as f64 }
+            });
+            let switch = self.wants.switches.has(limit(forward));
+            match source {
+                LimitSource::Switch => switch,
+                LimitSource::HardStop => held,
+                LimitSource::Either => switch || held,
+            }
+        };
+        let home = self.wants.switches.has(Input::HomeSwitch);
+        let all =
+            [(Input::HomeSwitch, home), (Input::LimitPos, at(true)), (Input::LimitNeg, at(false))];
+        let mut switches = Inputs::default();
+        all.iter().filter(|(_, on)| *on).for_each(|(signal, _)| switches.insert(*signal));
+        switches
+    }
+
+    /// The next index mark that is passed this way.
+    pub(super) fn next_index(&self, now: Instant, marks: Index, way: Way) -> Option<IndexPulse> {
+        let index = self.machine.index.or(Some(marks));
+        let machine = Machine { index, ..self.machine };
+        let mut after = now;
+        // While the axis turns round it may pass marks the other way.
+        loop {
+            let pulse = machine.next_index(&self.trajectory, after)?;
+            if pulse.way == way {
+                return Some(pulse);
+            }
+            after = pulse.at;
+        }
+    }
+}

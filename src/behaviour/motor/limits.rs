@@ -1,0 +1,60 @@
+//! Limits outside a homing: a switch, or a position that the drive keeps by itself. Into them nothing goes, out
+//! of them everything does.
+
+use super::{Motor, Phase, Stage};
+use crate::event::Ignored;
+use crate::motion::Trajectory;
+use crate::time::Instant;
+use crate::words::{Input, LimitStop};
+
+impl Motor {
+    /// Is the axis at the limit in that direction?
+    pub(super) fn is_at_limit(&self, now: Instant, forward: bool) -> bool {
+        self.wants.switches.has(limit(forward)) || self.is_beyond_soft_limit(now, forward)
+    }
+
+    /// Is it beyond the soft limit in that direction?
+    pub(super) fn is_beyond_soft_limit(&self, now: Instant, forward: bool) -> bool {
+        self.wants.soft_limits.is_some_and(|[low, high]| {
+            let position = self.state(now).position;
+            if forward { position > high as f64 } else { position < low as f64 }
+        })
+    }
+
+    /// May a motion start in the direction of `way`?
+    pub(super) fn may_go(&self, now: Instant, way: i64) -> Result<(), Ignored> {
+        match way != 0 && self.is_at_limit(now, way > 0) {
+            true => Err(Ignored::Limit),
+            false => Ok(()),
+        }
+    }
+
+    /// Ends a motion that goes into a limit.
+    pub(super) fn obey_limits(&mut self, now: Instant) {
+        let free = match self.phase {
+            Phase::Moving | Phase::Running | Phase::Jogging { .. } => false,
+            Phase::Standing | Phase::Stopping | Phase::Coasting | Phase::Homing => true,
+        };
+        if free || !self.is_at_limit(now, self.forward) {
+            return;
+        }
+        let soft = !self.wants.switches.has(limit(self.forward));
+        self.told.push_back(Stage::Limit { forward: self.forward, soft });
+        match self.wants.limit_stop {
+            LimitStop::Coast => self.run_out(now),
+            LimitStop::Quick => {
+                let trajectory = Trajectory::halt(now, self.state(now));
+                self.begin(now, trajectory, Phase::Stopping);
+            }
+            LimitStop::Ramp => {
+                let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+                self.begin(now, trajectory, Phase::Stopping);
+            }
+        }
+    }
+}
+
+/// The limit in that direction.
+pub(super) fn limit(forward: bool) -> Input {
+    if forward { Input::LimitPos } else { Input::LimitNeg }
+}
