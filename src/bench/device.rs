@@ -1,5 +1,6 @@
 //! One device of a bench: a model with its options, and what each station of it is set to.
 
+use crate::bank::Kept;
 use crate::drive::Setup;
 use crate::model::{Model, RowId};
 use crate::problem::suggest;
@@ -87,7 +88,8 @@ impl Device {
             values.extend(
                 spec.unit.and_then(|unit| unit_value(&model, unit, station, &mut problems)),
             );
-            Setup { station, values, switches, terminals, position: spec.position }
+            let (kept, position) = (Kept::default(), spec.position);
+            Setup { station, kept, values, switches, terminals, position }
         });
         let setups = setups.collect();
         match problems.is_empty() {

@@ -155,7 +155,8 @@ fn line(
     let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
     let wire = WireSpec { mode, ..own };
     if !matches!(port, PortSpec::Tcp(_)) {
-        match_line(&mut device, wire.mode).map_err(Failure::invalid)?;
+        match_line(&mut device, wire.mode, args.ascii || mode != own.mode)
+            .map_err(Failure::invalid)?;
     } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }

@@ -55,6 +55,7 @@ impl Served {
         loop {
             match self.bus.poll_output()? {
                 Output::Transmit { link, frame } => return Some(Send::Frame(link, frame)),
+                Output::Keep(_) => {}
                 Output::Close(link) => return Some(Send::Close(link)),
                 Output::Moved(mode) => {
                     self.moved(mode);
