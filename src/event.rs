@@ -1,7 +1,7 @@
 //! What happened: the values that the log, the tests and later tools are made from. No text here.
 
 use crate::serial::Mode;
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
@@ -142,6 +142,15 @@ pub enum Change {
     PositionCleared,
     /// All values were stored.
     Stored,
+    /// A master wears the memory out.
+    Wear {
+        /// The row that it stores; `None` for all at once.
+        row: Option<RowId>,
+        /// How often it was stored.
+        writes: u32,
+        /// In this time; `None` for ever.
+        within: Option<Duration>,
+    },
     /// All values are as they left the factory.
     FactoryRestored,
     /// It answers to another unit address now.

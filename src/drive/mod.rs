@@ -6,6 +6,7 @@
 //! other drive.
 
 mod home;
+mod memory;
 mod motion;
 mod react;
 mod setup;
@@ -23,6 +24,7 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use memory::Memory;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -35,6 +37,7 @@ pub struct Drive {
     now: Instant,
     /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
     bank: Bank,
+    memory: Memory,
     servo: Servo,
     /// Watchdogs of the input words.
     holds: Vec<Hold>,
@@ -65,6 +68,7 @@ impl Drive {
     /// A drive of `model` as the bench sets it up, switched on at `now`.
     pub fn new(model: Arc<Model>, setup: &Setup, now: Instant) -> Self {
         let mut bank = Bank::new(&model, setup.station);
+        bank.recall(&model, &setup.kept);
         setup.values.iter().for_each(|(row, raw)| bank.preset(&model, *row, *raw));
         let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
         let mut drive = Self {
@@ -79,6 +83,7 @@ impl Drive {
             station: setup.station,
             now,
             bank,
+            memory: Memory::default(),
             terminals: setup.terminals,
             inputs: Inputs::default(),
             switches: setup.switches,
@@ -220,6 +225,7 @@ impl Drive {
         let gate = Gate { enabled: self.servo.is_enabled() };
         let plan = self.bank.plan_write(&self.model, span, words, gate)?;
         self.bank.commit(&self.model, &plan);
+        self.note_stored(&plan);
         self.react(&plan);
         Ok(())
     }
@@ -262,6 +268,7 @@ impl Drive {
             self.changes.push_back(Change::Enabled(false));
         }
         let servo = self.model.wiring.servo;
+        self.memory.power_on();
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
         self.motor = Motor::standing(now, position, coast, *self.motor.machine());
@@ -325,12 +332,14 @@ impl Drive {
             Action::StoreAll => {
                 self.bank.store_all(&self.model);
                 self.changes.push_back(Change::Stored);
+                self.note_stored_all();
             }
             Action::RestoreFactory => {
                 self.bank.restore_factory(&self.model, self.station);
                 // Input words are 0 then, so there is nothing left to fall back.
                 self.holds.iter_mut().for_each(Hold::stop);
                 self.changes.push_back(Change::FactoryRestored);
+                self.note_stored_all();
                 self.gather_inputs();
                 self.follow_line_settings();
             }

@@ -130,6 +130,11 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         }
         Change::PositionCleared => ("position_cleared", json!({})),
         Change::Stored => ("stored", json!({})),
+        Change::Wear { row, writes, within } => {
+            let row = row.map(|row| &drive.model().map.row(row).id);
+            let within_s = within.map(|within| within.as_secs());
+            ("wear", json!({"row": row, "writes": writes, "within_s": within_s}))
+        }
         Change::FactoryRestored => ("factory_restored", json!({})),
         Change::Unit { from, to } => ("unit_changed", json!({"from": from, "to": to})),
         Change::Mode { from, to } => {

@@ -143,6 +143,13 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         }
         Change::PositionCleared => "position set to 0".into(),
         Change::Stored => "all parameters stored".into(),
+        Change::Wear { row, writes, within } => {
+            let row = row.map(|row| rows::label(drive.model().map.row(row)));
+            let row = row.unwrap_or_else(|| "all parameters".into());
+            let within = within.map(|within| format!(" within {} s", within.as_secs()));
+            let within = within.unwrap_or_default();
+            format!("wears out its memory: {row} stored {writes} times{within}")
+        }
         Change::FactoryRestored => "all parameters as from the factory".into(),
         Change::Unit { from, to } => {
             format!("answers to unit {to} from now on, no longer to {from}")

@@ -57,7 +57,7 @@ const HOURS: [Hour; 4] = [
 
 const YAKO_CLOSED: Hour = Hour {
     model: "yako-closed-loop",
-    set: &[],
+    set: &[("home_speed", 600)],
     terminals: &[],
     round: &[
         (0, "06 0027 0002"),
