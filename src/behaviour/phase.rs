@@ -2,7 +2,7 @@
 
 /// What an axis is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Phase {
+pub enum Phase {
     /// Nothing.
     Standing,
     /// Going to a position.

@@ -5,8 +5,11 @@
 //! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
+mod levels;
 mod motion;
 mod react;
+mod segments;
+mod settings;
 mod setup;
 mod show;
 mod signals;
@@ -14,7 +17,7 @@ mod signals;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Hold, Motor, Servo, Trip};
+use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Trip};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -22,6 +25,7 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use levels::{Level, Velocity};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -44,6 +48,13 @@ pub struct Drive {
     unit: u8,
     mode: Option<Mode>,
     motor: Motor,
+    /// What levels ask for, and how that began.
+    run: Option<(Level, Ramp)>,
+    /// The velocity segment that is active.
+    velocity: Option<Velocity>,
+    /// Number of the position segment that started last.
+    segment: u16,
+    chain: Chain,
     /// Where the machine is when the position register says 0.
     zero: i64,
     /// What the position is called whenever power comes on: there is no absolute encoder.
@@ -64,6 +75,10 @@ impl Drive {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
             motor: Motor::standing(now, 0.0, model.wiring.axis.coast),
+            run: None,
+            velocity: None,
+            segment: 0,
+            chain: Chain::default(),
             zero: 0,
             model,
             station: setup.station,
@@ -170,6 +185,7 @@ impl Drive {
             self.end_motion();
             self.expire_words();
             self.settle();
+            self.advance_chain();
         }
         self.now = self.now.max(now);
     }
@@ -177,7 +193,8 @@ impl Drive {
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let holds = self.holds.iter().filter_map(Hold::deadline);
-        holds.chain(self.servo.deadline()).chain(self.motor.deadline()).min()
+        let ends = [self.servo.deadline(), self.motor.deadline(), self.chain.deadline()];
+        holds.chain(ends.into_iter().flatten()).min()
     }
 
     /// The next change that has not been told yet.
@@ -250,8 +267,11 @@ impl Drive {
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
         self.motor = Motor::standing(now, position, coast);
+        (self.run, self.velocity, self.segment) = (None, None, 0);
+        self.chain.end();
         self.holds.iter_mut().for_each(Hold::stop);
-        self.inputs = Inputs::default();
+        // What is active from the start has not risen.
+        self.inputs = self.active_inputs();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();

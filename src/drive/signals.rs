@@ -19,7 +19,9 @@ impl Drive {
             self.servo.reset(tell);
         }
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
+        self.select_velocity();
         self.settle();
+        self.start_by_inputs(now.risen_since(before));
     }
 
     /// The output signals, right now.
@@ -34,6 +36,11 @@ impl Drive {
             .with(Output::Moving, self.motor.is_moving())
             .with(Output::InPosition, self.motor.is_in_position())
             .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
+            .with(Output::Segment0, self.segment & 1 != 0)
+            .with(Output::Segment1, self.segment & 2 != 0)
+            .with(Output::Segment2, self.segment & 4 != 0)
+            .with(Output::Segment3, self.segment & 8 != 0)
+            .with(Output::Segment4, self.segment & 16 != 0)
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.
@@ -55,7 +62,7 @@ impl Drive {
         monitored(monitor, active, self.normally_closed(terminals), terminals)
     }
 
-    fn active_inputs(&self) -> Inputs {
+    pub(super) fn active_inputs(&self) -> Inputs {
         let wiring = &self.model.wiring;
         let is_set = |row, bit: u16| self.bank.raw(row) >> bit & 1 != 0;
         let mut inputs = Inputs::default();

@@ -6,7 +6,7 @@ use crate::event::Ignored;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
-use crate::words::{Cause, Detail, Refusal};
+use crate::words::{Cause, Condition, Detail, Refusal};
 
 /// `range 0..6000`, `0x1234 is not mapped`.
 pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
@@ -51,6 +51,17 @@ pub fn ignored(why: Ignored) -> &'static str {
         Ignored::PowerOff => "the servo is off",
         Ignored::Held => "a stop input is active",
         Ignored::Moving => "the axis moves",
+        Ignored::NoSegment => "there is no such segment",
+    }
+}
+
+/// Why a chain goes on.
+pub fn chain_step(why: Option<Condition>) -> &'static str {
+    match why {
+        None => "in position",
+        Some(Condition::Delay) => "its time is over",
+        Some(Condition::Step) => "`segment_step` has risen",
+        Some(Condition::Position) => "the position is reached",
     }
 }
 

@@ -229,7 +229,7 @@ fn within(
 }
 
 /// Does each code have a value of the row, or of one hex digit of it, and the factory value a code?
-fn coded<T>(
+pub(super) fn coded<T>(
     row: Option<RowId>,
     digit: Option<u8>,
     codes: &BTreeMap<i64, T>,

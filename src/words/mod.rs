@@ -6,6 +6,7 @@
 mod action;
 mod alarm;
 mod cause;
+mod condition;
 mod quantity;
 mod refusal;
 mod setting;
@@ -14,6 +15,7 @@ mod signal;
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
 pub use cause::Cause;
+pub use condition::Condition;
 pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
 pub use setting::Setting;

@@ -4,7 +4,7 @@ use super::{acme, give, give_with};
 use drivemu::bench::DeviceSpec;
 use drivemu::model::Row;
 use drivemu::testkit::Rig;
-use drivemu::words::{Action, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{Action, Input, Modifier, Output, Quantity, Setting, Word};
 use std::time::Duration;
 
 #[test]
@@ -44,21 +44,28 @@ fn each_modifier_counts() {
 /// Where the axis is, every ten milliseconds, while it does what `setting` is about and then stops; and the
 /// row with the setting. With `changed`, that row holds more.
 fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String, i64)) {
-    let spec = DeviceSpec { set: changed.into_iter().collect(), ..DeviceSpec::default() };
+    let set = changed.into_iter().collect();
+    let spec = DeviceSpec { set, position: 5, ..DeviceSpec::default() };
     let mut rig = acme(&spec);
     let model = rig.drive().model().clone();
     let id = model.wiring.axis.setting(setting).expect("every setting is wired");
     let row: &Row = model.map.row(id);
-    let more = (row.id.clone(), rig.drive().bank().value(&model, id) * 2 + 7);
+    let most = row.spans.last().expect("a range").1;
+    let more = (row.id.clone(), (rig.drive().bank().value(&model, id) * 2 + 7).min(most));
     give(&mut rig, Action::Enable);
     let mut places = Vec::new();
     match setting.name().split('.').next() {
         Some("run") => give(&mut rig, Action::RunStart),
+        Some("move") if setting == Setting::MoveAbsolute => {
+            super::by_bit(&mut rig, Input::MoveStart, true);
+        }
+        Some("inch") => super::by_bit(&mut rig, Input::InchPos, true),
         Some("move") => give(&mut rig, Action::MoveStart),
         _ => jog(&mut rig, true),
     }
     look(&mut rig, &mut places, 200);
     jog(&mut rig, false);
+    super::by_bit(&mut rig, Input::InchPos, false);
     if setting.name().starts_with("run") {
         give(&mut rig, Action::Stop);
     }
@@ -67,7 +74,7 @@ fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String
 }
 
 fn jog(rig: &mut Rig, on: bool) {
-    super::by_bit(rig, drivemu::words::Input::JogPos, on);
+    super::by_bit(rig, Input::JogPos, on);
 }
 
 fn look(rig: &mut Rig, places: &mut Vec<i64>, count: usize) {

@@ -5,10 +5,12 @@
 
 mod line;
 mod row;
+mod segments;
 mod wiring;
 
 pub use line::*;
 pub use row::*;
+pub use segments::*;
 pub use wiring::*;
 
 use serde::Deserialize;
@@ -154,6 +156,7 @@ pub const KEYS: &[&str] = &[
     "about",
     "access",
     "alarms",
+    "all",
     "applies",
     "assumed",
     "at",
@@ -161,12 +164,14 @@ pub const KEYS: &[&str] = &[
     "base",
     "baud",
     "bits",
+    "chain",
     "choices",
     "clears",
     "coast",
     "code",
     "codes",
     "commands",
+    "conditions",
     "counts_per_rev",
     "crc_error",
     "default",
@@ -181,6 +186,7 @@ pub const KEYS: &[&str] = &[
     "id",
     "init",
     "inputs",
+    "kind",
     "length_check",
     "line",
     "lock",
@@ -193,10 +199,12 @@ pub const KEYS: &[&str] = &[
     "monitor",
     "n",
     "name",
+    "next",
     "normally_closed",
     "note",
     "options",
     "outputs",
+    "position",
     "positions",
     "prefix",
     "products",
@@ -209,7 +217,9 @@ pub const KEYS: &[&str] = &[
     "repeats",
     "resettable",
     "rev",
+    "rule",
     "see",
+    "segments",
     "servo",
     "shows",
     "signals",
@@ -220,11 +230,16 @@ pub const KEYS: &[&str] = &[
     "stride",
     "switches",
     "terminals",
+    "through",
     "title",
+    "trigger",
     "triggers",
     "type",
     "unit",
+    "units",
+    "value",
     "values",
+    "velocity",
     "vendor",
     "volatile",
     "why",

@@ -3,7 +3,7 @@
 
 use super::Counts;
 use super::compile::Wirer;
-use crate::model::raw::{RawAxis, RawCounts};
+use crate::model::raw::{RawAxis, RawCounts, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::Dimension;
 use crate::words::{Action, Input, Output, Quantity, Setting, Word};
@@ -17,13 +17,13 @@ struct Kind {
     takes: &'static [Setting],
 }
 
-const KINDS: [Kind; 3] = [
+const KINDS: [Kind; 6] = [
     Kind {
         name: "run",
-        inputs: &[],
+        inputs: &[Input::Run],
         action: Some(Action::RunStart),
         needs: &[Setting::RunSpeed],
-        takes: &[Setting::RunAccel, Setting::RunDecel],
+        takes: &[Setting::RunStartSpeed, Setting::RunAccel, Setting::RunDecel],
     },
     Kind {
         name: "jog",
@@ -33,11 +33,32 @@ const KINDS: [Kind; 3] = [
         takes: &[Setting::JogAccel, Setting::JogDecel],
     },
     Kind {
+        name: "jog by `inch_pos`",
+        inputs: &[Input::InchPos, Input::InchNeg],
+        action: None,
+        needs: &[Setting::InchSpeed],
+        takes: &[Setting::InchAccel, Setting::InchDecel],
+    },
+    Kind {
         name: "move",
-        inputs: &[],
+        inputs: &[Input::MoveStart],
         action: Some(Action::MoveStart),
         needs: &[Setting::MoveTarget, Setting::MoveSpeed],
         takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
+    },
+    Kind {
+        name: "move by input",
+        inputs: &[Input::MoveStart],
+        action: None,
+        needs: &[],
+        takes: &[Setting::MoveAbsolute],
+    },
+    Kind {
+        name: "segment",
+        inputs: &[Input::SegmentStart, Input::SegmentRun],
+        action: None,
+        needs: &[],
+        takes: &[],
     },
 ];
 
@@ -66,6 +87,9 @@ impl Wirer<'_> {
         if starter.is_none() {
             self.signals_without_motion(&inputs, &actions);
         }
+        let none = RawSegments::default();
+        let segments = raw.map_or(&none, |raw| &raw.segments);
+        self.segments(segments, &path.key("segments"), &inputs);
         let Some(raw) = raw else { return };
         if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
             self.wiring.axis.counts_per_rev = counts;
@@ -161,7 +185,7 @@ impl Wirer<'_> {
         commands.chain(triggers).collect()
     }
 
-    fn is_shown(&self, output: Output) -> bool {
+    pub(super) fn is_shown(&self, output: Output) -> bool {
         let wiring = &self.wiring;
         let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
         let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
