@@ -46,6 +46,13 @@ pub struct Rule {
     pub through: bool,
 }
 
+impl Rule {
+    /// Is there nothing that a segment could wait for?
+    fn is_last(&self) -> bool {
+        self.waits.iter().all(Option::is_none) && !self.through
+    }
+}
+
 /// A chain, under way or not.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Chain {
@@ -76,8 +83,8 @@ impl Chain {
     pub fn begin(&mut self, now: Instant, rule: Rule) {
         self.at_once = if self.began == now { self.at_once + 1 } else { 0 };
         self.began = now;
-        let link = Link { rule, arrived: None, stepped: None };
-        self.under_way = Some(link).filter(|_| self.at_once < MOST_STEPS_AT_ONCE);
+        let goes_on = !rule.is_last() && self.at_once < MOST_STEPS_AT_ONCE;
+        self.under_way = goes_on.then_some(Link { rule, arrived: None, stepped: None });
     }
 
     /// Nothing follows.
@@ -117,7 +124,7 @@ impl Link {
         let Rule { waits, all, through } = self.rule;
         let mut waits = waits.into_iter().flatten().peekable();
         if waits.peek().is_none() {
-            return self.arrived.filter(|_| through).map(|at| (at, None));
+            return self.arrived.map(|at| (at, None));
         }
         let mut met = waits.map(|it| self.met(it).map(|at| (at, it.condition())));
         let (at, why) = match all {
