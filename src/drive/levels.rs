@@ -2,7 +2,7 @@
 
 use super::Drive;
 use crate::behaviour::{Phase, Ramp};
-use crate::model::raw::RawLasts;
+use crate::model::Lasts;
 use crate::words::{Input, Setting};
 
 /// What a level asks for.
@@ -84,14 +84,14 @@ impl Drive {
         match self.velocity {
             Some(it) if it.by_edge || active => {}
             _ => {
-                let by_level = active && self.velocity_lasts() == Some(RawLasts::Level);
+                let by_level = active && self.velocity_lasts() == Some(Lasts::Level);
                 self.velocity = by_level.then(|| self.selected_velocity(false)).flatten();
             }
         }
     }
 
     /// How long a velocity segment lasts that begins now.
-    pub(super) fn velocity_lasts(&self) -> Option<RawLasts> {
+    pub(super) fn velocity_lasts(&self) -> Option<Lasts> {
         let segments = self.model.wiring.axis.segments.velocity.as_ref()?;
         segments.trigger.get(|row| self.bank.value(&self.model, row))
     }

@@ -64,10 +64,12 @@ impl Drive {
                 self.motor.start_run(now, ramp, tell)
             }
             Action::QuickStop => {
+                self.chain.end();
                 self.motor.quick_stop(now, tell);
                 Ok(())
             }
             _ => {
+                self.chain.end();
                 self.motor.stop(now, tell);
                 Ok(())
             }

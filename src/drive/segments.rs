@@ -4,8 +4,7 @@ use super::Drive;
 use super::motion::Stages;
 use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
 use crate::event::{Change, Ignored};
-use crate::model::raw::{RawLasts, RawTarget};
-use crate::model::{ChainRules, Link};
+use crate::model::{ChainRules, Lasts, Link, Target};
 use crate::time::Duration;
 use crate::words::{Condition, Input, Inputs, RowId, Setting};
 
@@ -39,7 +38,9 @@ impl Drive {
         let Some(segments) = &self.model.wiring.axis.segments.position else { return 0 };
         let link = segments.get(self.segment).and_then(|it| it.link.as_ref());
         match link.filter(|_| self.chain.is_under_way()) {
-            Some(link) => self.bank.raw(link.next) as u16,
+            Some(link) => {
+                u16::try_from(self.bank.value(&self.model, link.next)).unwrap_or(u16::MAX)
+            }
             None => self.selected(segments.first),
         }
     }
@@ -67,9 +68,11 @@ impl Drive {
             return self.chain.end();
         }
         self.changes.push_back(Change::ChainStep { from, to, why });
-        // What keeps it from starting has ended the chain: the motion under way is the segment's own.
-        let _ = self.move_by_segment(to, true);
-        self.settle();
+        // The motion under way, if there is one, is that of the segment which gives way.
+        match self.move_by_segment(to, true) {
+            Ok(()) => self.settle(),
+            Err(_) => self.chain.end(),
+        }
     }
 
     fn start_move(&mut self) -> Result<(), Ignored> {
@@ -92,7 +95,7 @@ impl Drive {
         let segments = model.wiring.axis.segments.position.as_ref().ok_or(Ignored::NoSegment)?;
         let segment = segments.get(number).ok_or(Ignored::NoSegment)?;
         let running = self.velocity.is_some_and(|it| it.by_edge);
-        let absolute = self.target_of(number)? == RawTarget::Absolute && !running;
+        let absolute = self.target_of(number)? == Target::Absolute && !running;
         self.motor.may_start(chained || running)?;
         self.segment = number;
         self.go_to(&segment.settings, absolute, chained || running, Some(number))?;
@@ -103,11 +106,11 @@ impl Drive {
     }
 
     /// What the target of position segment `number` is, if there is such a segment and it is not empty.
-    fn target_of(&self, number: u16) -> Result<RawTarget, Ignored> {
+    fn target_of(&self, number: u16) -> Result<Target, Ignored> {
         let segments = self.model.wiring.axis.segments.position.as_ref();
         let segment = segments.and_then(|it| it.get(number)).ok_or(Ignored::NoSegment)?;
         let target = segment.kind.get(|row| self.bank.value(&self.model, row));
-        target.filter(|it| *it != RawTarget::None).ok_or(Ignored::NoSegment)
+        target.ok_or(Ignored::NoSegment)
     }
 
     fn step_chain(&mut self) -> Result<(), Ignored> {
@@ -118,7 +121,7 @@ impl Drive {
 
     /// By level it needs no start: it has been wanted since the level came.
     fn start_velocity_segment(&mut self) -> Result<(), Ignored> {
-        if self.velocity_lasts() == Some(RawLasts::Edge) {
+        if self.velocity_lasts() == Some(Lasts::Edge) {
             self.motor.may_start(false)?;
             self.velocity = self.selected_velocity(true);
         }

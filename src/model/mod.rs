@@ -21,9 +21,9 @@ pub use load::{Choices, check, load};
 pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use wiring::{
-    Alarm, Axis, ChainRules, Commands, Counts, Hold, InputWords, Link, Monitor, OutputWords,
-    PerRow, PositionSegment, PositionSegments, Reaction, Segments, Servo, Shown, Shows, Terminals,
-    Triggers, VelocitySegments, Wiring,
+    Alarm, Axis, ChainRules, Commands, Counts, Hold, InputWords, Lasts, Link, Monitor, OutputWords,
+    PerRow, PositionSegment, PositionSegments, Reaction, Segments, Servo, Shown, Shows, Target,
+    Terminals, Triggers, VelocitySegments, Wiring,
 };
 
 /// One drive of one vendor, as data.

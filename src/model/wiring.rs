@@ -6,12 +6,16 @@ mod compile;
 mod names;
 mod orders;
 mod quantities;
+mod segment_rows;
+mod segment_signals;
 mod segments;
 mod used;
 
 pub use chain::{ChainRules, Link};
 pub(super) use compile::compile;
-pub use segments::{PerRow, PositionSegment, PositionSegments, Segments, VelocitySegments};
+pub use segments::{
+    Lasts, PerRow, PositionSegment, PositionSegments, Segments, Target, VelocitySegments,
+};
 pub(super) use used::check_inert;
 
 use super::RowId;

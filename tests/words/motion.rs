@@ -100,15 +100,7 @@ fn the_log_tells_of_motions() {
     rig.advance(second);
     give(&mut rig, Action::Release);
     rig.advance(second);
-    let fields = ["event", "to", "rpm", "at", "action", "why", "text"];
-    let told = rig.events().iter().map(|event| {
-        let object = drivemu::log::json::object(event, "line", rig.bus());
-        let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
-        fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
-    });
-    let motions = ["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"];
-    let told: Vec<String> =
-        told.filter(|it| motions.iter().any(|kind| it.starts_with(kind))).collect();
+    let told = told(&rig, &["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"]);
     let want = [
         "ignored | run_start | the servo is off | unit 5 run_start ignored: the servo is off",
         "moves | 200000 | unit 5 moves to 200000",
@@ -122,4 +114,16 @@ fn the_log_tells_of_motions() {
         "stands | 462144 | unit 5 stands at 462144",
     ];
     assert_eq!(told, want);
+}
+
+/// What a program reads of the events of these kinds, and that people read the same.
+#[cfg(feature = "cli")]
+pub(super) fn told(rig: &Rig, kinds: &[&str]) -> Vec<String> {
+    let fields = ["event", "segment", "from", "to", "rpm", "at", "action", "input", "why", "text"];
+    let told = rig.events().iter().map(|event| {
+        let object = drivemu::log::json::object(event, "line", rig.bus());
+        let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
+        fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
+    });
+    told.filter(|it| kinds.iter().any(|kind| it.starts_with(kind))).collect()
 }

@@ -48,3 +48,24 @@ fn each_condition_counts() {
         assert_eq!(running(&rig), 17, "`{}`\n{}", condition.name(), rig.log());
     }
 }
+
+/// What a program reads in the log of segments, and that people read the same.
+#[cfg(feature = "cli")]
+#[test]
+fn the_log_tells_of_segments() {
+    let mut rig = acme(&DeviceSpec::default());
+    by_bit(&mut rig, Input::SegmentStart, true);
+    by_bit(&mut rig, Input::SegmentStart, false);
+    chain(&mut rig, 3, 4);
+    rig.advance(Duration::from_secs(1));
+    by_bit(&mut rig, Input::SegmentRun, true);
+    let kinds = ["position_segment", "velocity_segment", "chain_step", "input_ignored"];
+    let want = [
+        "input_ignored | segment_start | the servo is off | unit 5 input segment_start ignored: the servo is off",
+        "position_segment | 16 | 40000 | unit 5 position segment 16 to 40000",
+        "chain_step | 16 | 17 | the position is reached | unit 5 segment 16 goes on with segment 17: the position is reached",
+        "position_segment | 17 | -5000 | unit 5 position segment 17 to -5000",
+        "velocity_segment | 0 | 60.0 | unit 5 velocity segment 0 at 60 rpm",
+    ];
+    assert_eq!(super::motion::told(&rig, &kinds), want);
+}

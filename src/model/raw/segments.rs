@@ -65,8 +65,8 @@ pub enum RawKind {
     Register {
         /// The row; `{n}` in its name is the number of the segment.
         register: String,
-        /// The kind by value.
-        codes: BTreeMap<i64, RawTarget>,
+        /// The kind by value; any other value is an empty segment too.
+        codes: BTreeMap<i64, RawKindCode>,
     },
 }
 
@@ -85,7 +85,18 @@ pub enum RawTarget {
     Relative,
     /// A position.
     Absolute,
-    /// Nothing: the segment is empty.
+}
+
+/// What a value of the row says about a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawKindCode {
+    /// Its target is a way to go.
+    Relative,
+    /// Its target is a position.
+    Absolute,
+    /// It is empty: nothing starts it.
     None,
 }
 
