@@ -30,6 +30,9 @@ const RUN: Takes = Takes {
     takes: &[Setting::RunStartSpeed, Setting::RunAccel, Setting::RunDecel],
 };
 
+/// More than any drive has: a slip of the pen is told at once, not row by row.
+const SEGMENTS_MAX: usize = 256;
+
 impl Wirer<'_> {
     pub(super) fn segments(&mut self, raw: &RawSegments, path: &Path, inputs: &[Input]) {
         if let Some(raw) = &raw.position {
@@ -113,6 +116,11 @@ impl Wirer<'_> {
         }
         let reach = 1 << SELECTS.iter().take_while(|it| inputs.contains(it)).count();
         let count = usize::from(last - first) + 1;
+        if count > SEGMENTS_MAX {
+            let what = format!("{count} segments, and {SEGMENTS_MAX} are the most");
+            self.problems.push(Problem::value(path.key("n"), what));
+            return None;
+        }
         if count > reach && !chained {
             let what = format!("{count} segments, and the inputs select {reach}");
             let problem = Problem::value(path.key("n"), what);
