@@ -6,7 +6,7 @@ use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{Action, AlarmCause, HomeEnd, Refusal, RowId, Step};
+use crate::words::{Action, AlarmCause, Condition, HomeEnd, Input, Refusal, RowId, Step};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,6 +182,29 @@ pub enum Change {
         /// In thousandths of a revolution a minute; the sign is the direction.
         mrpm: i64,
     },
+    /// A position segment begins.
+    PositionSegment {
+        /// Its number.
+        number: u16,
+        /// Where to, in counts of the drive.
+        to: i64,
+    },
+    /// A velocity segment begins.
+    VelocitySegment {
+        /// Its number.
+        number: u16,
+        /// In thousandths of a revolution a minute; the sign is the direction.
+        mrpm: i64,
+    },
+    /// A chain goes on.
+    ChainStep {
+        /// Number of the segment so far.
+        from: u16,
+        /// Number of the next one.
+        to: u16,
+        /// The condition that was met last of those that count; `None` where there is none.
+        why: Option<Condition>,
+    },
     /// It slows down to a standstill.
     Stops,
     /// Its power stage went off while it moved: it runs out.
@@ -272,6 +295,13 @@ pub enum Change {
         /// Why.
         why: Ignored,
     },
+    /// An input signal rose and does nothing.
+    InputIgnored {
+        /// The signal.
+        input: Input,
+        /// Why.
+        why: Ignored,
+    },
     /// An input terminal got another level.
     Terminal {
         /// Index from 0.
@@ -298,4 +328,6 @@ pub enum Ignored {
     Starter,
     /// A parameter holds a value that stands for nothing.
     NoMeaning,
+    /// Nothing has the number that is selected.
+    NoSegment,
 }

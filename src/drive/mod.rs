@@ -6,9 +6,12 @@
 //! other drive.
 
 mod home;
+mod levels;
 mod memory;
 mod motion;
 mod react;
+mod segments;
+mod settings;
 mod setup;
 mod show;
 mod signals;
@@ -16,7 +19,7 @@ mod signals;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Hold, Motor, Servo, Trip};
+use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Trip};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -24,6 +27,7 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use levels::{Level, Velocity};
 use memory::Memory;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -48,6 +52,13 @@ pub struct Drive {
     unit: u8,
     mode: Option<Mode>,
     motor: Motor,
+    /// What levels ask for, and how that began.
+    run: Option<(Level, Ramp)>,
+    /// The velocity segment that is active.
+    velocity: Option<Velocity>,
+    /// Number of the position segment that started last.
+    segment: u16,
+    chain: Chain,
     /// Where the machine is when the position register says 0.
     zero: i64,
     /// Has an origin been found since power came on?
@@ -75,6 +86,10 @@ impl Drive {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
             motor: Motor::standing(now, setup.start as f64, model.wiring.axis.coast, setup.machine),
+            run: None,
+            velocity: None,
+            segment: 0,
+            chain: Chain::default(),
             zero: 0,
             home_done: false,
             method: 0,
@@ -187,9 +202,10 @@ impl Drive {
                 self.gather_inputs();
             }
             self.motor.advance(self.now);
-            self.tell_stages();
+            self.tell_stages(None);
             self.expire_words();
             self.settle();
+            self.advance_chain();
         }
         self.now = self.now.max(now);
     }
@@ -197,7 +213,8 @@ impl Drive {
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let holds = self.holds.iter().filter_map(Hold::deadline);
-        holds.chain(self.servo.deadline()).chain(self.motor.deadline()).min()
+        let ends = [self.servo.deadline(), self.motor.deadline(), self.chain.deadline()];
+        holds.chain(ends.into_iter().flatten()).min()
     }
 
     /// The next change that has not been told yet.
@@ -273,7 +290,11 @@ impl Drive {
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
         self.motor = Motor::standing(now, position, coast, *self.motor.machine());
         (self.home_done, self.never_enabled) = (false, true);
+        (self.run, self.velocity, self.segment) = (None, None, 0);
+        self.chain.end();
         self.holds.iter_mut().for_each(Hold::stop);
+        // What is active from the start has not risen.
+        self.inputs = self.active_inputs();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
@@ -282,8 +303,6 @@ impl Drive {
         if from.is_some() && from != mode {
             self.changes.push_back(Change::Mode { from, to: mode });
         }
-        // What is active when power comes on does not rise.
-        self.inputs = self.active_inputs();
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
         self.settle();

@@ -166,6 +166,13 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::Moves { to } => format!("moves to {to}"),
         Change::Runs { mrpm } => format!("runs at {} rpm", rpm(*mrpm)),
         Change::Jogs { mrpm } => format!("jogs at {} rpm", rpm(*mrpm)),
+        Change::PositionSegment { number, to } => format!("position segment {number} to {to}"),
+        Change::VelocitySegment { number, mrpm } => {
+            format!("velocity segment {number} at {} rpm", rpm(*mrpm))
+        }
+        Change::ChainStep { from, to, why } => {
+            format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
+        }
         Change::Stops => "stops".into(),
         Change::Coasts => "runs out, the servo is off".into(),
         Change::Stands { at } => format!("stands at {at}"),
@@ -205,6 +212,9 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         }
         Change::Ignored { action, why } => {
             format!("{} ignored: {}", action.name(), why::ignored(*why))
+        }
+        Change::InputIgnored { input, why } => {
+            format!("input {} ignored: {}", input.name(), why::ignored(*why))
         }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();
