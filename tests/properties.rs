@@ -269,7 +269,7 @@ fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Ev
             }
             Some(Happening::Bytes(bytes)) => bus.receive(now, link, bytes),
             Some(Happening::Do(command)) => {
-                bus.command(now, *command).expect("a drive that has it all");
+                bus.command(now, command.clone()).expect("a drive that has it all");
             }
         }
         let drained = drain(&mut bus);
@@ -282,7 +282,7 @@ fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Ev
 }
 
 fn bus(model: &str, framing: Framing) -> (Bus, LinkId) {
-    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus();
+    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus(0);
     let link = bus.open(framing);
     drain(&mut bus);
     (bus, link)

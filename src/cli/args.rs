@@ -63,6 +63,10 @@ pub struct RunArgs {
     /// A model option (crc_error=silent) or a register's start value (accel_time=200); repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// A fault rule, for every line of a bench: KIND, or KIND:KEY=VALUE,... such as
+    /// lose_reply:every=10 (see docs/faults.md); repeatable
+    #[arg(long, value_name = "SPEC")]
+    pub fault: Vec<String>,
     /// Seed of the run, told on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

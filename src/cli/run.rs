@@ -22,7 +22,13 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     if !(1e-3..=1e6).contains(&args.rate) {
         return Err(Failure::invalid("--rate takes a number from 0.001 to 1000000"));
     }
-    let (bench, base) = bench(&args)?;
+    let (mut bench, base) = bench(&args)?;
+    for spec in &args.fault {
+        for line in &mut bench.lines {
+            let added = line.add_fault(spec);
+            added.map_err(|problems| Failure::invalid(render(&problems, "--fault", spec)))?;
+        }
+    }
     let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
     let options = RunOptions {
         seed,
@@ -159,7 +165,8 @@ fn line(
     } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }
-    Ok(BenchLine { name: "line".into(), port, wire, devices: vec![device] })
+    let (name, devices, faults) = ("line".into(), vec![device], Vec::new());
+    Ok(BenchLine { name, port, wire, devices, faults })
 }
 
 fn port(args: &RunArgs) -> PortSpec {

@@ -80,7 +80,7 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     let clock = Clock::start(options.rate);
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
     for line in &bench.lines {
-        let (task, endpoint) = open(line, clock, &log, &options.base)?;
+        let (task, endpoint) = open(line, clock, &log, &options)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
@@ -118,16 +118,16 @@ fn open(
     line: &BenchLine,
     clock: Clock,
     log: &Arc<Mutex<Logger>>,
-    base: &Path,
+    options: &RunOptions,
 ) -> Result<(Task, Endpoint), OpenError> {
-    let (bus, name) = (line.bus(), line.name.clone());
+    let (bus, name) = (line.bus(options.seed), line.name.clone());
     let (wire, settings) = (line.wire, line.wire.mode.settings);
     let mut endpoint = endpoint(line, &bus);
     let served = |frames| Served { name, bus, clock, frames, log: Some(log.clone()) };
     let refused = |error: io::Error| OpenError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {
-            let link = link.as_ref().map(|link| base.join(link));
+            let link = link.as_ref().map(|link| options.base.join(link));
             let pty = open_pty(link.as_deref(), settings).map_err(refused)?;
             endpoint.path = Some(pty.path().display().to_string());
             endpoint.link = pty.link().map(|link| link.display().to_string());
