@@ -4,7 +4,10 @@ mod bytes;
 #[cfg(feature = "cli")]
 mod keys;
 #[cfg(feature = "cli")]
+mod log;
+#[cfg(feature = "cli")]
 mod master;
+mod page;
 mod streams;
 mod turns;
 
