@@ -1,6 +1,6 @@
 //! What holds whatever happens: random traffic, cut anywhere, at any time.
 
-mod traffic;
+pub mod traffic;
 
 use crate::kit::{MODELS, drain, line_of, rig, text_of};
 use drivemu::bench::DeviceSpec;

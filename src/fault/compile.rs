@@ -2,7 +2,7 @@
 //!
 //! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
 
-use super::raw::{KEYS, RawFault, RawFunctions, RawMillis, RawRegister};
+use super::raw::{RawFault, RawFunctions, RawMillis, RawRegister};
 use super::{Act, Kind, Rule, When, spec};
 use crate::problem::{Path, Problem};
 use crate::rng::Chance;
@@ -101,7 +101,7 @@ impl Reader<'_> {
             ("count", raw.count.is_some()),
         ];
         for (key, _) in turns.iter().filter(|(_, given)| *given && kind.preset().is_some()) {
-            let what = format!("the rules of a preset have their own `{key}`");
+            let what = format!("a preset takes no `{key}`");
             let problem = Problem::key(self.path.key(key), what);
             self.problems.push(problem.advise("write out the rules that you want"));
         }
@@ -143,12 +143,6 @@ impl Reader<'_> {
         if let Some(probability) = raw.probability.filter(|it| !(*it > 0.0 && *it <= 1.0)) {
             let what = format!("a probability is above 0 and at most 1, not {probability}");
             self.refuse("probability", what, None);
-        }
-        if let (Some(unit), Some(to)) = (raw.unit, raw.to)
-            && unit == to
-            && raw.act == Kind::WrongUnit
-        {
-            self.refuse("to", format!("unit {to} is the right one"), None);
         }
         When {
             unit: raw.unit,
@@ -249,7 +243,12 @@ impl Reader<'_> {
                 at: self.within("at", raw.at, 1..=512),
                 gap_ms: self.within("gap_ms", raw.gap_ms, 1..=u32::MAX).unwrap_or(20),
             },
-            Kind::WrongUnit => Act::WrongUnit { to: raw.to },
+            Kind::WrongUnit => {
+                if let Some(to) = raw.to.filter(|to| raw.unit == Some(*to)) {
+                    self.refuse("to", format!("unit {to} is the right one"), None);
+                }
+                Act::WrongUnit { to: raw.to }
+            }
             Kind::WrongFunction => Act::WrongFunction { to: self.within("to", raw.to, 1..=0x7F) },
             Kind::Exception => {
                 self.needs("code", raw.code.is_some())?;
@@ -287,7 +286,6 @@ impl Reader<'_> {
 
     /// A key that its kind can't do without.
     fn needs(&mut self, key: &str, given: bool) -> Option<()> {
-        debug_assert!(KEYS.contains(&key));
         if !given {
             let what = format!("`{}` needs `{key}`", self.raw.act.name());
             self.refuse("do", what, None);

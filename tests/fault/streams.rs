@@ -1,9 +1,13 @@
 //! What is drawn depends on seed, line, rule and occurrence, and on nothing else.
 
 use super::{READ, ask, drive_of, mishaps};
+use crate::properties::traffic::{Piece, pieces};
+use drivemu::bus::WakeReason;
 use drivemu::event::{Mishap, What};
+use drivemu::fault::Kind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
+use proptest::prelude::*;
 
 fn run(specs: &[&str], seed: u64, n: usize) -> (Rig, Vec<u8>) {
     let mut rig = drive_of("hcfa-x", specs, seed);
@@ -75,4 +79,34 @@ fn one_seed_one_run() {
         (0..64).map(|_| ask(&mut rig, READ).is_empty()).collect::<Vec<_>>()
     };
     assert!(lost("a") == lost("a") && lost("a") != lost("b"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    /// No traffic brings it down in any weather, what is held leaves, and the seed says it all.
+    #[test]
+    fn any_traffic_in_any_weather(seed: u64, traffic in pieces(1..40)) {
+        let spec = |kind: &Kind| match kind {
+            Kind::Delay => "delay:ms=0-40,probability=0.1".to_owned(),
+            Kind::Exception => "exception:code=4,probability=0.1".to_owned(),
+            kind if kind.preset().is_some() => kind.name().to_owned(),
+            kind => format!("{}:probability=0.1", kind.name()),
+        };
+        let specs: Vec<_> = Kind::ALL.iter().map(spec).collect();
+        let specs: Vec<&str> = specs.iter().map(String::as_str).collect();
+        let run = || {
+            let mut rig = drive_of("yako-closed-loop", &specs, seed);
+            let mut sent = Vec::new();
+            for Piece { bytes, pause } in &traffic {
+                sent.extend(rig.push(bytes));
+                sent.extend(rig.advance(*pause));
+            }
+            sent.extend(rig.advance(Duration::from_secs(60)));
+            (sent, rig.log(), rig.bus().poll_at())
+        };
+        let (sent, log, wake) = run();
+        prop_assert!(!matches!(wake.map(|it| it.reason), Some(WakeReason::Reply(_))));
+        prop_assert_eq!((sent, log, wake), run());
+    }
 }
