@@ -83,12 +83,7 @@ impl Bus {
             | Command::Raise { drive, .. }
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
-            Command::RemoveFault(name) => {
-                return match self.faults.remove(&name) {
-                    true => Ok(Reply::Done),
-                    false => Err(CommandError::NoFault(name)),
-                };
-            }
+            Command::RemoveFault(name) => return self.remove_fault(name),
         };
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
@@ -110,6 +105,7 @@ impl Bus {
                 let device = self.devices[usize::from(id.0)];
                 self.power_cycle(device);
             }
+            // These are not for a drive and were carried out above.
             Command::AddFault(_) | Command::RemoveFault(_) => {}
         }
         Ok(Reply::Done)
@@ -124,6 +120,12 @@ impl Bus {
         match self.faults.add(rule) {
             true => Ok(Reply::Done),
             false => Err(CommandError::FaultTaken(name)),
+        }
+    }
+    fn remove_fault(&mut self, name: String) -> Result<Reply, CommandError> {
+        match self.faults.remove(&name) {
+            true => Ok(Reply::Done),
+            false => Err(CommandError::NoFault(name)),
         }
     }
 }

@@ -16,7 +16,7 @@
 //! << 01 83 7F 00 D0
 //! >> ":0103100300018"                  # characters, CR LF is added
 //! << -                                 # silence
-//! + 200ms                              # time passes
+//! + 200ms                              # time passes; what comes meanwhile is for a `<` or `<<` line
 //! ? alarm off  C003 30                 # signals, quantities and registers of the drive
 //! ! power_cycle                        # also `terminal I1 on`, `raise overload`, `fault SPEC`, `no_fault NAME`
 //! log refused, range 0..50             # the log since the last such line says so

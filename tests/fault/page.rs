@@ -74,9 +74,20 @@ fn examples_work() {
     let bench = bench.unwrap_or_else(|problems| panic!("{}", problems[0]));
     assert_eq!(bench.lines[0].faults.len(), 3 + Kind::NoisyCable.preset().map_or(0, <[_]>::len));
     let consoles = fenced(&page, "console");
+    let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
+    let readme = fenced(&read(&root("README.md")), "console");
+    let commands = consoles[..1].iter().chain(&readme);
+    let specs = commands.flat_map(|text| text.split("--fault ").skip(1));
+    let specs: Vec<_> = specs
+        .filter_map(|it| it.split_whitespace().next())
+        .map(|it| it.trim_matches('\''))
+        .collect();
+    assert!(specs.len() >= 5, "{specs:?}");
+    for spec in specs {
+        assert_eq!(line.fault(spec, &[]).err(), None, "{spec}");
+    }
     let (command, said) = consoles[1].split_once('\n').expect("two lines");
     let spec = command.rsplit(' ').next().expect("a spec");
-    let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
     let problems = line.fault(spec, &[]).expect_err("a mistake");
     assert_eq!(render(&problems, "--fault", spec), said);
 }

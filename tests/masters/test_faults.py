@@ -51,7 +51,8 @@ def test_pymodbus_gets_no_answer(emulate, client, kind):
 
 
 def test_a_lost_reply_was_executed_and_a_lost_request_was_not(emulate, client):
-    faults = ["--fault", "lose_reply:count=1,function=6", "--fault", "lose_request:skip=1,count=1,function=6"]
+    faults = ["--fault", "lose_reply:function=6,count=1"]
+    faults += ["--fault", "lose_request:function=6,skip=1,count=1"]
     master = client(emulate("hcfa-x", *TCP, *faults).endpoint)
     for value, after in [(7, 7), (8, 7)]:
         with pytest.raises(ModbusIOException):
