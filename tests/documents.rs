@@ -126,7 +126,7 @@ fn is_part(part: &Value, whole: &Value) -> bool {
 }
 
 /// The blocks of a page that are fenced as `kind`.
-fn fenced(page: &str, kind: &str) -> Vec<String> {
+pub fn fenced(page: &str, kind: &str) -> Vec<String> {
     let open = format!("```{kind}\n");
     page.split(&open)
         .skip(1)
