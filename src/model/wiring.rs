@@ -1,12 +1,15 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
 mod axis;
+mod choice;
 mod compile;
 mod homing;
+mod limits;
 mod names;
 mod orders;
 mod quantities;
 mod used;
+mod wired;
 
 pub(super) use compile::compile;
 pub(super) use used::check_inert;

@@ -1,21 +1,17 @@
-//! How an axis looks for its origin and what its limits do: words resolved, and whether everything goes together.
+//! How an axis looks for its origin: words resolved, and whether everything goes together.
 
-use super::Digit;
+mod steps;
+
 use super::compile::Wirer;
-use super::{Choice, Finish, Homing, Limits};
-use crate::model::line::{Coded, coded};
-use crate::model::raw::{
-    RawChoice, RawChosen, RawDigit, RawFinish, RawHoming, RawLimits, RawMethod, RawStep, RawWay,
-};
-use crate::problem::{At, Path, Problem};
+use super::{Choice, Finish, Homing};
+use crate::model::RowId;
+use crate::model::raw::{RawFinish, RawHoming, RawMethod};
+use crate::problem::{Path, Problem};
 use crate::words::{
-    Edge, IndexRule, Input, LimitRule, LimitSource, MOST_STEPS, Method, OriginPosition, OriginStop,
-    Setting, Step, Steps, Until, Word,
+    IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition, OriginStop, Pace, Setting,
+    Step, Steps, Until, Word,
 };
 use std::collections::BTreeMap;
-
-/// Signals that a step can wait for.
-const SWITCHES: [Input; 3] = [Input::HomeSwitch, Input::LimitPos, Input::LimitNeg];
 
 impl Wirer<'_> {
     pub(super) fn homing(&mut self, raw: &RawHoming) {
@@ -64,39 +60,8 @@ impl Wirer<'_> {
         self.wiring.homing = Some(homing);
     }
 
-    pub(super) fn limits(&mut self, raw: &RawLimits) {
-        let path = Path::root().key("limits");
-        let stop = self.words_chosen(&raw.stop, "way to stop", &path.key("stop"));
-        let soft = self.words_chosen(&raw.soft, "rule for soft limits", &path.key("soft"));
-        let has = |wirer: &Self, setting| wirer.wiring.axis.setting(setting).is_some();
-        let softs = [Setting::SoftLimitPos, Setting::SoftLimitNeg];
-        let wired = softs.map(|setting| has(self, setting));
-        match wired {
-            [true, true] => {}
-            [false, false] => {
-                if soft.is_some() {
-                    let what = "`soft` changes nothing: no row holds a soft limit";
-                    let advice = "wire `limit.soft_pos` and `limit.soft_neg`, or leave it out";
-                    self.problems.push(Problem::key(path.key("soft"), what).advise(advice));
-                }
-            }
-            _ => {
-                let name = softs[usize::from(wired[0])].name();
-                let what = format!("no row holds `{name}`, and soft limits are two");
-                self.problems.push(Problem::key(Path::root().key("quantities"), what));
-            }
-        }
-        let inputs = self.inputs_wired();
-        let any = [Input::LimitPos, Input::LimitNeg].iter().any(|it| inputs.contains(it));
-        if stop.is_some() && !any && wired == [false, false] {
-            let what = "`stop` changes nothing: there is no limit";
-            self.problems.push(Problem::key(path.key("stop"), what).advise("leave it out"));
-        }
-        self.wiring.limits = Limits { stop, soft };
-    }
-
     /// Each number that the row can hold has steps, or is said to have none.
-    fn numbers(&mut self, row: crate::model::RowId, raw: &RawHoming, path: &Path) {
+    fn numbers(&mut self, row: RowId, raw: &RawHoming, path: &Path) {
         let row = self.rows.map.row(row);
         for number in raw.methods.keys().filter(|it| !row.admits(**it)) {
             let what = format!("{} never holds {number}", row.id);
@@ -120,100 +85,6 @@ impl Wirer<'_> {
         }
     }
 
-    fn method(&mut self, raw: &RawMethod, path: &Path) -> Method {
-        let by = raw.by.as_ref().and_then(|name| self.switch(name, &path.key("by")));
-        for (key, steps) in [("on", &raw.on), ("at_limit", &raw.at_limit)] {
-            let why = match key {
-                "on" if by.is_none() => "there is no `by`",
-                "at_limit" if raw.steps.is_empty() => "there is no first step",
-                _ => continue,
-            };
-            if !steps.is_empty() {
-                let what = format!("`{key}` changes nothing: {why}");
-                self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
-            }
-        }
-        if by.is_some() && raw.on.is_empty() {
-            let what = "`by` changes nothing without `on`";
-            self.problems.push(Problem::key(path.key("by"), what).advise("leave it out"));
-        }
-        Method {
-            by,
-            steps: self.steps(&raw.steps, &path.key("steps")),
-            at_limit: self.steps(&raw.at_limit, &path.key("at_limit")),
-            on: self.steps(&raw.on, &path.key("on")),
-            index: raw.index,
-        }
-    }
-
-    fn steps(&mut self, raw: &[RawStep], path: &Path) -> Steps {
-        if raw.len() > MOST_STEPS {
-            let what = format!("{} steps, and there is room for {MOST_STEPS}", raw.len());
-            self.problems.push(Problem::value(path.clone(), what));
-        }
-        let step = |(i, it): (usize, &RawStep)| self.step(it, &path.index(i));
-        let steps: Vec<_> = raw.iter().enumerate().filter_map(step).collect();
-        let origin = |step: &Step| step.then == crate::words::Then::Origin;
-        let last = steps.len().saturating_sub(1);
-        if steps.len() == raw.len() {
-            for (i, step) in steps.iter().enumerate().filter(|(i, it)| origin(it) != (*i == last)) {
-                let what = match origin(step) {
-                    true => "the origin ends a homing, and a step follows",
-                    false => "the last step finds no origin",
-                };
-                self.problems.push(Problem::value(path.index(i).key("then"), what));
-            }
-        }
-        Steps::new(&steps)
-    }
-
-    fn step(&mut self, raw: &RawStep, path: &Path) -> Option<Step> {
-        let pace = self.word(&raw.at, "pace", &path.key("at"));
-        let until = self.until(&raw.to, &path.key("to"));
-        let then = self.word(&raw.then, "end of a step", &path.key("then"));
-        Some(Step { forward: raw.go == RawWay::Pos, pace: pace?, until: until?, then: then? })
-    }
-
-    fn until(&mut self, text: &str, path: &Path) -> Option<Until> {
-        match text {
-            "collision" => return Some(Until::Collision),
-            "index" => return Some(Until::Index(None)),
-            _ => {}
-        }
-        let (index, edge) = match text.strip_prefix("index after ") {
-            Some(edge) => (true, edge),
-            None => (false, text),
-        };
-        let (name, on) = match edge.split_once(' ') {
-            Some((name, "on")) => (name, true),
-            Some((name, "off")) => (name, false),
-            _ => {
-                let what = format!("`{text}` is nothing to wait for");
-                let advice =
-                    "a switch with `on` or `off`, `index`, `index after SWITCH on`, or `collision`";
-                self.problems.push(Problem::value(path.clone(), what).advise(advice));
-                return None;
-            }
-        };
-        let edge = Edge { signal: self.switch(name, path)?, on };
-        Some(if index { Until::Index(Some(edge)) } else { Until::Edge(edge) })
-    }
-
-    /// One of the switches, and wired.
-    fn switch(&mut self, name: &str, path: &Path) -> Option<Input> {
-        let signal = self.word::<Input>(name, "switch", path)?;
-        let names = || SWITCHES.map(Word::name).join(", ");
-        let what = if !SWITCHES.contains(&signal) {
-            format!("`{name}` is no switch; there are {}", names())
-        } else if !self.inputs_wired().contains(&signal) {
-            format!("`{name}` is wired to nothing")
-        } else {
-            return Some(signal);
-        };
-        self.problems.push(Problem::value(path.clone(), what));
-        None
-    }
-
     fn finish(&mut self, raw: &RawFinish, path: &Path) -> Option<Finish> {
         let position = self.word(&raw.position, "position", &path.key("position"))?;
         if raw.of_origin && !raw.go {
@@ -235,8 +106,8 @@ impl Wirer<'_> {
             |it: &Finish| !matches!(it.position, OriginPosition::Zero | OriginPosition::Kept);
         let moves = goes || any(|_| true);
         let uses = [
-            (Setting::HomeFast, goes || any(|it| it.pace == crate::words::Pace::Fast), true),
-            (Setting::HomeSlow, refined || any(|it| it.pace == crate::words::Pace::Slow), true),
+            (Setting::HomeFast, goes || any(|it| it.pace == Pace::Fast), true),
+            (Setting::HomeSlow, refined || any(|it| it.pace == Pace::Slow), true),
             (Setting::HomeAccel, moves, false),
             (Setting::HomeWay, goes, true),
             (Setting::HomeCoordinate, finishes.iter().any(sets), true),
@@ -288,66 +159,6 @@ impl Wirer<'_> {
         if is {
             let what = format!("`{key}` changes nothing: {why}");
             self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
-        }
-    }
-}
-
-/// Choices by row.
-impl Wirer<'_> {
-    fn words_chosen<W: Word>(
-        &mut self,
-        raw: &Option<RawChoice<String>>,
-        kind: &str,
-        path: &Path,
-    ) -> Option<Choice<W>> {
-        self.choice(raw, path, |wirer, name: &String, path| wirer.word(name, kind, path))
-    }
-
-    fn choice<R, T: Copy>(
-        &mut self,
-        raw: &Option<RawChoice<R>>,
-        path: &Path,
-        read: impl Fn(&mut Self, &R, &Path) -> Option<T>,
-    ) -> Option<Choice<T>> {
-        Some(match raw.as_ref()? {
-            RawChoice::Fixed(it) => Choice::Fixed(read(self, it, path)?),
-            RawChoice::Row(it) => Choice::Row(self.chosen(it, path, read)?),
-        })
-    }
-
-    fn chosen<R, T: Copy>(
-        &mut self,
-        raw: &RawChosen<R>,
-        path: &Path,
-        read: impl Fn(&mut Self, &R, &Path) -> Option<T>,
-    ) -> Option<Coded<T>> {
-        let row = self.row(&raw.register, &path.key("register"));
-        coded(row, raw.digit, &raw.codes, self.rows, path, self.problems);
-        let mut codes = BTreeMap::new();
-        for (code, it) in &raw.codes {
-            let meaning = read(self, it, &path.key("codes").key(code));
-            codes.extend(meaning.map(|meaning| (*code, meaning)));
-        }
-        Some(Coded { row: row?, digit: raw.digit, codes })
-    }
-
-    fn digit(&mut self, raw: &RawDigit, path: &Path) -> Option<Digit> {
-        let row = self.row(&raw.register, &path.key("register"))?;
-        if raw.digit.is_some_and(|digit| digit > 3) {
-            let what = "a word has hex digits 0 to 3, counted from the right";
-            self.problems
-                .push(Problem { at: At::Value, ..Problem::value(path.key("digit"), what) });
-        }
-        Some(Digit { row, digit: raw.digit })
-    }
-}
-
-impl<T: Copy> Choice<T> {
-    /// Everything that it can come to.
-    fn all(&self) -> Vec<T> {
-        match self {
-            Self::Fixed(it) => vec![*it],
-            Self::Row(coded) => coded.codes.values().copied().collect(),
         }
     }
 }
