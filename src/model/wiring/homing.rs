@@ -1,5 +1,6 @@
 //! How an axis looks for its origin: words resolved, and whether everything goes together.
 
+mod starts;
 mod steps;
 
 use super::compile::Wirer;
@@ -8,45 +9,30 @@ use crate::model::RowId;
 use crate::model::raw::{RawFinish, RawHoming, RawMethod};
 use crate::problem::{Path, Problem};
 use crate::words::{
-    IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition, OriginStop, Pace, Setting,
-    Step, Steps, Until, Word,
+    AlarmCause, IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition, OriginStop, Pace,
+    Setting, Step, Until, Word,
 };
 use std::collections::BTreeMap;
 
 impl Wirer<'_> {
     pub(super) fn homing(&mut self, raw: &RawHoming) {
         let path = Path::root().key("homing");
-        let methods_path = path.key("methods");
-        let method = |(number, raw): (&i64, &RawMethod)| {
-            (*number, self.method(raw, &methods_path.key(number)))
-        };
-        let methods: BTreeMap<i64, Method> = raw.methods.iter().map(method).collect();
         let row = raw.method.as_ref().and_then(|id| self.row(id, &path.key("method")));
-        match row {
-            Some(row) => self.numbers(row, raw, &path),
-            None if raw.method.is_none() && methods.len() != 1 => {
-                let what = "without a row that chooses there is one method";
-                self.problems.push(Problem::key(methods_path, what).advise("add `method: ROW`"));
-            }
-            None => {}
-        }
         let stop = raw.stop.as_ref().and_then(|it| {
             self.word::<OriginStop>(it, "way to stand at the origin", &path.key("stop"))
         });
-        let homing = Homing {
+        let starter = raw.starter.as_ref().and_then(|it| {
+            self.chosen(it, &path.key("starter"), |wirer, name: &String, path| {
+                wirer.word(name, "starter of a homing", path)
+            })
+        });
+        let source = &raw.limit_source;
+        self.wiring.homing = Some(Homing {
             method: row,
-            methods,
-            starter: raw.starter.as_ref().and_then(|it| {
-                self.chosen(it, &path.key("starter"), |wirer, name: &String, path| {
-                    wirer.word(name, "starter of a homing", path)
-                })
-            }),
+            methods: BTreeMap::new(),
+            starter,
             limit: self.words_chosen(&raw.limit, "meaning of a limit", &path.key("limit")),
-            source: self.words_chosen(
-                &raw.limit_source,
-                "source of limits",
-                &path.key("limit_source"),
-            ),
+            source: self.words_chosen(source, "source of limits", &path.key("limit_source")),
             index: self.words_chosen(&raw.index, "use of the index pulse", &path.key("index")),
             stop: stop.unwrap_or(OriginStop::AtOnce),
             finish: self.choice(&raw.finish, &path.key("finish"), Self::finish),
@@ -54,10 +40,37 @@ impl Wirer<'_> {
                 .time_factor
                 .as_ref()
                 .and_then(|it| self.digit(it, &path.key("time_factor"))),
-        };
+        });
+        let methods = self.methods(raw, &path.key("methods"));
+        if let Some(row) = row {
+            self.numbers(row, raw, &path);
+        } else if !raw.no_steps.is_empty() && raw.method.is_none() {
+            self.unused("no_steps", "there is no `method`", &path);
+        }
+        let Some(mut homing) = self.wiring.homing.take() else { return };
+        let stays = methods.values().all(|it| it.all_steps().next().is_none());
+        let of_steps = [
+            ("stop", raw.stop.is_some()),
+            ("limit", raw.limit.is_some()),
+            ("limit_source", raw.limit_source.is_some()),
+        ];
+        for (key, _) in of_steps.into_iter().filter(|(_, given)| stays && *given) {
+            self.unused(key, "no method has steps", &path);
+        }
+        homing.methods = methods;
         self.homing_settings(&homing, &path);
-        self.homing_signals(&homing, &path);
         self.wiring.homing = Some(homing);
+        self.homing_limits(&path);
+    }
+
+    fn methods(&mut self, raw: &RawHoming, path: &Path) -> BTreeMap<i64, Method> {
+        if raw.method.is_none() && raw.methods.len() != 1 {
+            let what = "without a row that chooses there is one method";
+            self.problems.push(Problem::key(path.clone(), what).advise("add `method: ROW`"));
+        }
+        let method =
+            |(number, raw): (&i64, &RawMethod)| (*number, self.method(raw, &path.key(number)));
+        raw.methods.iter().map(method).collect()
     }
 
     /// Each number that the row can hold has steps, or is said to have none.
@@ -68,28 +81,31 @@ impl Wirer<'_> {
             self.problems.push(Problem::key(path.key("methods").key(number), what));
         }
         for (i, number) in raw.no_steps.iter().enumerate() {
-            let known = raw.methods.contains_key(number);
-            let what = match row.admits(*number) {
-                true if known => format!("method {number} has steps"),
-                true => continue,
-                false => format!("{} never holds {number}", row.id),
+            let what = match () {
+                () if !row.admits(*number) => format!("{} never holds {number}", row.id),
+                () if raw.methods.contains_key(number) => {
+                    format!("{number} stands among the methods")
+                }
+                () if raw.no_steps[..i].contains(number) => format!("{number} stands here twice"),
+                () => continue,
             };
             self.problems.push(Problem::value(path.key("no_steps").index(i), what));
         }
         let known = |it: &i64| raw.methods.contains_key(it) || raw.no_steps.contains(it);
         let mut all = row.spans.iter().flat_map(|(low, high)| *low..=*high);
         if let Some(number) = all.find(|it| !known(it)) {
-            let what = format!("{} can hold {number}, and that is no method here", row.id);
+            let what = format!("{} can hold {number}, and there is no such method", row.id);
             let problem = Problem::key(path.key("methods"), what);
-            self.problems.push(problem.advise("give it steps, or list it in `no_steps`"));
+            self.problems.push(problem.advise("add it, or list it in `no_steps`"));
         }
     }
 
     fn finish(&mut self, raw: &RawFinish, path: &Path) -> Option<Finish> {
         let position = self.word(&raw.position, "position", &path.key("position"))?;
         if raw.of_origin && !raw.go {
-            let what = "`of_origin` changes nothing: the axis stays there";
-            self.problems.push(Problem::key(path.key("of_origin"), what).advise("leave it out"));
+            self.unused("of_origin", "the axis stays there", path);
+        } else if raw.of_origin && keeps(position) {
+            self.unused("of_origin", "the register goes on from what it says", path);
         }
         Some(Finish { go: raw.go, position, of_origin: raw.of_origin })
     }
@@ -97,8 +113,7 @@ impl Wirer<'_> {
     /// A homing has the numbers that it goes by, and goes by those that it has.
     fn homing_settings(&mut self, homing: &Homing, path: &Path) {
         let methods = homing.methods.values();
-        let steps = || methods.clone().flat_map(|it| [&it.steps, &it.at_limit, &it.on]);
-        let any = |test: fn(Step) -> bool| steps().flat_map(Steps::iter).any(test);
+        let any = |test: fn(Step) -> bool| methods.clone().flat_map(Method::all_steps).any(test);
         let finishes: Vec<Finish> = homing.finish.iter().flat_map(Choice::all).collect();
         let refined = methods.clone().any(|it| it.index);
         let goes = finishes.iter().any(|it| it.go);
@@ -129,38 +144,37 @@ impl Wirer<'_> {
             }
         }
         let limited = self.wiring.axis.setting(Setting::HomeTimeLimit).is_some();
-        self.unused(
-            homing.time_factor.is_some() && !limited,
-            "time_factor",
-            "there is no `home.time_limit`",
-            path,
-        );
-        self.unused(
-            homing.index.is_some() && !refined,
-            "index",
-            "no method says `index: true`",
-            path,
-        );
-        if refined && homing.index.is_none() {
-            let what = "`index: true` changes nothing: `homing.index` does not say what it means";
-            self.problems.push(Problem::key(path.key("methods"), what));
+        if homing.time_factor.is_some() && !limited {
+            self.unused("time_factor", "no row holds `home.time_limit`", path);
+        }
+        if homing.index.is_some() && !refined {
+            self.unused("index", "no method says `index: true`", path);
         }
     }
 
-    /// Something starts a homing, and what it looks for can be there.
-    fn homing_signals(&mut self, homing: &Homing, path: &Path) {
-        let inputs = self.inputs_wired();
-        let limits = inputs.contains(&Input::LimitPos) || inputs.contains(&Input::LimitNeg);
-        self.unused(homing.limit.is_some() && !limits, "limit", "no limit is wired", path);
-        self.unused(homing.source.is_some() && !limits, "limit_source", "no limit is wired", path);
-    }
-
-    fn unused(&mut self, is: bool, key: &str, why: &str, path: &Path) {
-        if is {
-            let what = format!("`{key}` changes nothing: {why}");
-            self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+    /// What is said about limits comes to something, and ends in alarms that there are.
+    fn homing_limits(&mut self, path: &Path) {
+        let ends = [
+            (Input::LimitPos, AlarmCause::HomingLimitPos),
+            (Input::LimitNeg, AlarmCause::HomingLimitNeg),
+        ];
+        let seen = ends.map(|(limit, _)| self.is_seen(limit));
+        let Some(homing) = &self.wiring.homing else { return };
+        let given = [("limit", homing.limit.is_some()), ("limit_source", homing.source.is_some())];
+        let alarms = homing.limit.as_ref().is_some_and(|it| it.all().contains(&LimitRule::Alarm));
+        if seen == [false, false] {
+            for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+                self.unused(key, "no limit is wired", path);
+            }
+        }
+        for ((_, cause), _) in ends.into_iter().zip(seen).filter(|(_, seen)| alarms && *seen) {
+            self.needs_alarm(LimitRule::Alarm.name(), cause, path.key("limit"));
         }
     }
+}
+
+fn keeps(position: OriginPosition) -> bool {
+    matches!(position, OriginPosition::Kept | OriginPosition::KeptPlus | OriginPosition::KeptMinus)
 }
 
 /// The defaults of what a file leaves out.
