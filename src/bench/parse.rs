@@ -180,7 +180,7 @@ impl Reader<'_> {
 
     fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
         let model = self.model(raw, path)?;
-        let machine = machine(&raw.machine).map_err(|problems| {
+        let machine = machine(&raw.machine, &model.wiring).map_err(|problems| {
             let path = path.key("machine");
             let problem = |it: MachineProblem| Problem::value(path.key(it.key), it.what);
             self.problems.extend(problems.into_iter().map(problem));

@@ -55,7 +55,8 @@ fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
         set: drive.set.clone(),
         switches: drive.switches,
         terminals: drive.terminals.clone(),
-        machine: machine(&drive.machine).map_err(|problems| problems[0].what.clone())?,
+        machine: machine(&drive.machine, &model.wiring)
+            .map_err(|problems| problems[0].what.clone())?,
         start: drive.machine.start.into(),
         position: drive.machine.position.into(),
     };
