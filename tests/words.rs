@@ -138,9 +138,11 @@ fn each_action_acts() {
         match action {
             Action::Release => give(&mut rig, Action::Enable),
             Action::AlarmReset => raise(&mut rig, AlarmCause::Overload),
+            Action::EncoderReset => raise(&mut rig, AlarmCause::Encoder),
             Action::Stop | Action::QuickStop => running(&mut rig),
             Action::MoveStart | Action::RunStart => give(&mut rig, Action::Enable),
             Action::Enable
+            | Action::ClearAlarmHistory
             | Action::ClearPosition
             | Action::StoreAll
             | Action::RestoreFactory
@@ -156,7 +158,8 @@ fn each_action_acts() {
             Action::RunStart => Change::Runs { mrpm: 60_000 },
             Action::Enable => Change::Enabled(true),
             Action::Release => Change::Enabled(false),
-            Action::AlarmReset => Change::AlarmCleared,
+            Action::AlarmReset | Action::EncoderReset => Change::AlarmCleared,
+            Action::ClearAlarmHistory => Change::AlarmHistoryCleared,
             Action::ClearPosition => Change::PositionCleared,
             Action::StoreAll => Change::Stored,
             Action::RestoreFactory => Change::FactoryRestored,
@@ -177,7 +180,7 @@ fn each_alarm_has_its_number() {
         assert!(rig.drive().output(Output::Alarm) && !rig.drive().output(Output::Ready));
         numbers.push(rig.drive().quantity(Quantity::AlarmCode));
     }
-    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x99]);
+    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x71, 0x99]);
 }
 
 /// A drive with a run of 60 rpm and a move of 200000 counts to make, unless `spec` says otherwise.

@@ -77,9 +77,12 @@ impl Bank {
         }
     }
 
-    /// Puts every value back as it left the factory, in force and kept.
+    /// Puts every value back as it left the factory, in force and kept. Alarms that were raised are no values
+    /// of somebody's: they stay on record.
     pub fn restore_factory(&mut self, model: &Model, station: usize) {
-        *self = Self::new(model, station);
+        let before = std::mem::replace(self, Self::new(model, station));
+        let history = model.wiring.alarm_history.iter();
+        history.for_each(|row| self.preset(model, *row, before.raw(*row)));
     }
 
     /// Power off and on: kept values return, the others are lost.

@@ -168,6 +168,15 @@ impl Motor {
         self.brake(now, tell);
     }
 
+    /// Slows down to a standstill with a slope of its own.
+    pub fn stop_with(&mut self, now: Instant, decel: f64, tell: &mut impl FnMut(Stage)) {
+        self.jog_spent = true;
+        if self.power && self.is_moving() {
+            let trajectory = Trajectory::stop(now, self.state(now), decel);
+            self.begin(now, trajectory, Phase::Stopping, Stage::Stops, tell);
+        }
+    }
+
     /// Stands at once.
     pub fn quick_stop(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
         self.jog_spent = true;

@@ -183,6 +183,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Shows::OutputWord(word) => format!("output word {}", word + 1),
         Shows::InputTerminals(_) => "input terminals".into(),
         Shows::OutputTerminals(_) => "output terminals".into(),
+        Shows::PastAlarm(_) => "alarms of the past".into(),
     });
     let reaction = || match model.wiring.reaction(id) {
         Reaction::None => goes_by(model, id),
@@ -205,6 +206,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
         }
         Reaction::Line => "how the drive is reached".into(),
+        Reaction::Timeout => "silence of the master".into(),
     };
     Some(shows.unwrap_or_else(reaction))
 }

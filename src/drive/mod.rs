@@ -5,6 +5,7 @@
 //! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
+mod alarms;
 mod motion;
 mod react;
 mod setup;
@@ -14,7 +15,7 @@ mod signals;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Hold, Motor, Servo, Trip};
+use crate::behaviour::{Hold, Motor, Servo};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -37,6 +38,8 @@ pub struct Drive {
     servo: Servo,
     /// Watchdogs of the input words.
     holds: Vec<Hold>,
+    /// Watchdog of the master: how long it may be silent.
+    silence: Hold,
     /// Signals on the input terminals, bit by bit.
     terminals: u16,
     inputs: Inputs,
@@ -63,6 +66,7 @@ impl Drive {
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
+            silence: Hold::default(),
             motor: Motor::standing(now, 0.0, model.wiring.axis.coast),
             zero: 0,
             model,
@@ -112,6 +116,7 @@ impl Drive {
     /// Answers a request that arrived at `now`, or says why not.
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
         self.advance_to(now);
+        self.hear();
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
             return Err(self.refuse(Cause::Function, Detail::Function(*function)));
         }
@@ -169,6 +174,7 @@ impl Drive {
             self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
             self.end_motion();
             self.expire_words();
+            self.end_silence();
             self.settle();
         }
         self.now = self.now.max(now);
@@ -176,21 +182,13 @@ impl Drive {
 
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
-        let holds = self.holds.iter().filter_map(Hold::deadline);
+        let holds = self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline);
         holds.chain(self.servo.deadline()).chain(self.motor.deadline()).min()
     }
 
     /// The next change that has not been told yet.
     pub fn poll_change(&mut self) -> Option<Change> {
         self.changes.pop_front()
-    }
-
-    /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.
-    fn trip(&mut self, cause: AlarmCause) -> bool {
-        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
-        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
-        self.servo.trip(trip, &mut |change| self.changes.push_back(change));
-        true
     }
 
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
@@ -250,7 +248,7 @@ impl Drive {
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
         self.motor = Motor::standing(now, position, coast);
-        self.holds.iter_mut().for_each(Hold::stop);
+        self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         self.inputs = Inputs::default();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
@@ -297,6 +295,8 @@ impl Drive {
             Action::Enable => self.servo.latch(true, tell),
             Action::Release => self.servo.latch(false, tell),
             Action::AlarmReset => self.servo.reset(tell),
+            Action::EncoderReset => self.servo.reset_of(AlarmCause::Encoder, tell),
+            Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
                 self.zero = self.motor.position(self.now);
                 self.changes.push_back(Change::PositionCleared);
@@ -309,6 +309,7 @@ impl Drive {
                 self.bank.restore_factory(&self.model, self.station);
                 // Input words are 0 then, so there is nothing left to fall back.
                 self.holds.iter_mut().for_each(Hold::stop);
+                self.hear();
                 self.changes.push_back(Change::FactoryRestored);
                 self.gather_inputs();
                 self.follow_line_settings();

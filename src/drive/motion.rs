@@ -4,7 +4,7 @@
 use super::Drive;
 use crate::behaviour::{Ramp, Stage, Wants};
 use crate::event::Change;
-use crate::model::Counts;
+use crate::model::{AlarmStop, Counts};
 use crate::motion::Move;
 use crate::units::Dimension;
 use crate::words::{Action, Input, Modifier, Modifiers, Setting};
@@ -23,10 +23,14 @@ impl Drive {
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
     /// at the end of each motion.
     pub(super) fn settle(&mut self) {
+        if self.servo.is_braking() && !self.motor.is_moving() {
+            self.servo.braked(&mut |change| self.changes.push_back(change));
+        }
         let has = |input| self.inputs.has(input);
         let wants = Wants {
             power: self.servo.is_enabled(),
-            stop: has(Input::Stop),
+            // What brakes for an alarm starts nothing.
+            stop: has(Input::Stop) || self.servo.is_braking(),
             quick_stop: has(Input::QuickStop),
             jog: self.jog(has(Input::JogPos), has(Input::JogNeg)),
         };
@@ -39,6 +43,19 @@ impl Drive {
     pub(super) fn end_motion(&mut self) {
         let mut stages = Stages::new(self);
         self.motor.advance(self.now, &mut |stage| stages.push(stage));
+        self.changes.extend(stages.changes());
+    }
+
+    /// Stops the axis for an alarm.
+    pub(super) fn brake(&mut self, stop: AlarmStop) {
+        let decel = self.slope(Setting::AlarmDecel, 0.0).unwrap_or(0.0);
+        let mut stages = Stages::new(self);
+        let tell = &mut |stage| stages.push(stage);
+        match stop {
+            AlarmStop::Coast => {}
+            AlarmStop::Ramp => self.motor.stop_with(self.now, decel, tell),
+            AlarmStop::Quick => self.motor.quick_stop(self.now, tell),
+        }
         self.changes.extend(stages.changes());
     }
 

@@ -8,7 +8,7 @@ impl Drive {
     /// The bits of what `row` shows right now.
     pub fn show(&self, row: RowId) -> u32 {
         match self.model.wiring.shows(row) {
-            None => self.bank.raw(row),
+            None | Some(Shows::PastAlarm(_)) => self.bank.raw(row),
             Some(Shows::Quantity(quantity)) => self.show_quantity(row, *quantity),
             Some(Shows::Bits(bits)) => {
                 let outputs = self.outputs();

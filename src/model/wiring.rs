@@ -1,5 +1,6 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
+mod alarms;
 mod axis;
 mod compile;
 mod names;
@@ -42,6 +43,10 @@ pub struct Wiring {
     pub axis: Axis,
     /// Alarms by cause.
     pub alarms: Vec<Alarm>,
+    /// Rows with the numbers of the alarms that were raised, newest first.
+    pub alarm_history: Vec<RowId>,
+    /// How long the master may be silent; `None` for ever.
+    pub timeout: Option<Hold>,
 }
 
 /// What a row shows instead of what was written.
@@ -57,6 +62,8 @@ pub enum Shows {
     InputTerminals(Monitor),
     /// The output terminals.
     OutputTerminals(Monitor),
+    /// The `n`th alarm of the past, from 0, the newest.
+    PastAlarm(u16),
 }
 
 /// An output signal, or its opposite.
@@ -119,7 +126,7 @@ pub struct InputWords {
     pub hold: Option<Hold>,
 }
 
-/// How long one write of an input word holds.
+/// How long one write of an input word holds, or how long the master may be silent.
 #[derive(Debug)]
 pub struct Hold {
     /// The row with the time.
@@ -175,6 +182,8 @@ pub enum Reaction {
     Trigger(u16),
     /// How the drive is reached: unit address, speed, format.
     Line,
+    /// How long the master may be silent.
+    Timeout,
 }
 
 /// When the drive is ready and what it does at power-on.
@@ -230,6 +239,19 @@ pub struct Alarm {
     pub code: u16,
     /// Does a reset clear it?
     pub resettable: bool,
+    /// What the axis does.
+    pub stop: AlarmStop,
+}
+
+/// What an axis that moves does when an alarm is raised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AlarmStop {
+    /// It runs out: the power stage goes off.
+    Coast,
+    /// It slows down, then the power stage goes off.
+    Ramp,
+    /// It stands at once, then the power stage goes off.
+    Quick,
 }
 
 impl Wiring {

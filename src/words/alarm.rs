@@ -11,6 +11,7 @@ words! {
         Overload "overload" "too much torque for too long",
         Encoder "encoder" "no or implausible feedback",
         PositionDeviation "position_deviation" "command and feedback too far apart",
+        CommTimeout "comm_timeout" "no master spoke to the drive in time",
         Forced "forced" "input `alarm_force` is active",
     }
 }

@@ -17,6 +17,7 @@ words! {
         MoveStartSpeed "move.start_speed" "speed that a move takes at once and drops at once",
         MoveAccel "move.accel" "how a move speeds up",
         MoveDecel "move.decel" "how a move slows down",
+        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops; read when the alarm is raised",
     }
 }
 
@@ -30,6 +31,7 @@ impl Setting {
             Self::RunSpeed | Self::JogSpeed | Self::MoveSpeed | Self::MoveStartSpeed => {
                 &[Dimension::Speed]
             }
+            Self::AlarmDecel => &[Dimension::Acceleration],
             Self::RunAccel
             | Self::RunDecel
             | Self::JogAccel

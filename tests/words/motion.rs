@@ -4,7 +4,7 @@ use super::{acme, give, give_with};
 use drivemu::bench::DeviceSpec;
 use drivemu::model::Row;
 use drivemu::testkit::Rig;
-use drivemu::words::{Action, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{Action, AlarmCause, Modifier, Output, Quantity, Setting, Word};
 use std::time::Duration;
 
 #[test]
@@ -58,6 +58,9 @@ fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String
         _ => jog(&mut rig, true),
     }
     look(&mut rig, &mut places, 200);
+    if setting == Setting::AlarmDecel {
+        super::raise(&mut rig, AlarmCause::CommTimeout);
+    }
     jog(&mut rig, false);
     if setting.name().starts_with("run") {
         give(&mut rig, Action::Stop);

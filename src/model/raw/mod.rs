@@ -63,6 +63,9 @@ pub struct RawModel {
     /// Alarms that the drive can raise, by cause.
     #[serde(default)]
     pub alarms: BTreeMap<String, RawAlarm>,
+    /// Rows that show the numbers of the alarms that were raised, newest first.
+    #[serde(default)]
+    pub alarm_history: Vec<String>,
 }
 
 /// Who makes the drive and what it is called.
@@ -153,6 +156,7 @@ pub fn schema() -> serde_json::Value {
 pub const KEYS: &[&str] = &[
     "about",
     "access",
+    "alarm_history",
     "alarms",
     "applies",
     "assumed",
@@ -217,9 +221,11 @@ pub const KEYS: &[&str] = &[
     "sim",
     "span",
     "stations",
+    "stop",
     "stride",
     "switches",
     "terminals",
+    "timeout",
     "title",
     "triggers",
     "type",

@@ -117,7 +117,7 @@ pub struct RawInputWords {
     pub hold: Option<RawHold>,
 }
 
-/// How long one write of an input word holds.
+/// A row with the time in which a master must do something again.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawHold {
@@ -187,8 +187,25 @@ pub struct RawAlarm {
     /// Does a reset clear it? Otherwise only a power cycle does. Default yes.
     #[serde(default = "yes")]
     pub resettable: bool,
+    /// What an axis that moves does when the alarm is raised; default `coast`.
+    #[serde(default)]
+    pub stop: RawAlarmStop,
     /// What was assumed, and why.
     pub assumed: Option<String>,
+}
+
+/// What an axis that moves does when an alarm is raised.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawAlarmStop {
+    /// Its power stage goes off and it runs out.
+    #[default]
+    Coast,
+    /// It slows down with `alarm.decel`; then its power stage goes off.
+    Ramp,
+    /// It stands at once; then its power stage goes off.
+    Quick,
 }
 
 fn yes() -> bool {

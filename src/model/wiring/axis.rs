@@ -141,13 +141,13 @@ impl Wirer<'_> {
         }
     }
 
-    fn without_motion(&mut self, name: &str, path: &Path) {
+    pub(super) fn without_motion(&mut self, name: &str, path: &Path) {
         let what = format!("`{name}` changes nothing: nothing starts a motion");
         let advice = "wire what starts it, or leave it out";
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
     }
 
-    fn inputs_wired(&self) -> Vec<Input> {
+    pub(super) fn inputs_wired(&self) -> Vec<Input> {
         let wiring = &self.wiring;
         let terminals = wiring.input_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
         let words = wiring.input_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
@@ -155,13 +155,13 @@ impl Wirer<'_> {
         terminals.chain(words).chain(bits).collect()
     }
 
-    fn actions_wired(&self) -> Vec<Action> {
+    pub(super) fn actions_wired(&self) -> Vec<Action> {
         let commands = self.wiring.commands.iter().flat_map(|it| &it.actions).map(|it| it.1);
         let triggers = self.wiring.triggers.iter().flat_map(|it| &it.actions).map(|it| it.1);
         commands.chain(triggers).collect()
     }
 
-    fn is_shown(&self, output: Output) -> bool {
+    pub(super) fn is_shown(&self, output: Output) -> bool {
         let wiring = &self.wiring;
         let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
         let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
