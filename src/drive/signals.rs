@@ -2,7 +2,7 @@
 
 use super::Drive;
 use crate::model::{Monitor, Shown, Terminals};
-use crate::words::{AlarmCause, Input, Inputs, Output, Outputs};
+use crate::words::{AlarmCause, Input, Inputs, Output, Outputs, RowId};
 
 impl Drive {
     /// Looks at every source again and tells the behaviours what changed.
@@ -25,6 +25,7 @@ impl Drive {
     /// The output signals, right now.
     pub(super) fn outputs(&self) -> Outputs {
         let enabled = self.servo.is_enabled();
+        let user = self.model.wiring.user_outputs.map_or(0, |row| self.bank.raw(row));
         Outputs::default()
             .with(Output::Powered, true)
             .with(Output::Ready, self.servo.is_ready())
@@ -34,6 +35,9 @@ impl Drive {
             .with(Output::Moving, self.motor.is_moving())
             .with(Output::InPosition, self.motor.is_in_position())
             .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
+            .with(Output::User0, user & 1 != 0)
+            .with(Output::User1, user >> 1 & 1 != 0)
+            .with(Output::User2, user >> 2 & 1 != 0)
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.
@@ -80,12 +84,19 @@ impl Drive {
         }
         for (row, bits) in &wiring.input_bits {
             for (bit, signal) in bits {
-                if is_set(*row, u16::from(*bit)) {
+                if is_set(*row, u16::from(*bit)) && !self.is_claimed(*row, *bit) {
                     inputs.insert(*signal);
                 }
             }
         }
         inputs
+    }
+
+    /// Is the signal of this bit somebody else's?
+    fn is_claimed(&self, row: RowId, bit: u8) -> bool {
+        let mut claims =
+            self.model.wiring.claims.iter().filter(|it| (it.row, it.bit) == (row, bit));
+        claims.any(|claim| claim.is_made(self.bank.value(&self.model, claim.by)))
     }
 
     fn normally_closed<S>(&self, terminals: &Terminals<S>) -> u32 {

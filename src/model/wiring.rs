@@ -2,16 +2,19 @@
 
 mod alarms;
 mod axis;
+mod claims;
 mod compile;
 mod names;
 mod orders;
 mod quantities;
 mod used;
+mod user;
 
 pub(super) use compile::compile;
 pub(super) use used::check_inert;
 
 use super::RowId;
+use super::line::code_in;
 use crate::time::Duration;
 use crate::units::Unit;
 use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting};
@@ -25,6 +28,8 @@ pub struct Wiring {
     pub input_words: Option<InputWords>,
     /// Rows whose bits are input signals.
     pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
+    /// What takes the signals of such bits away.
+    pub claims: Vec<Claim>,
     /// Rows in which a written value triggers an action.
     pub commands: Vec<Commands>,
     /// Rows whose bits trigger actions.
@@ -35,6 +40,8 @@ pub struct Wiring {
     pub shows: Vec<Option<Shows>>,
     /// Output words.
     pub output_words: Option<OutputWords>,
+    /// The row whose bits show as user-defined outputs.
+    pub user_outputs: Option<RowId>,
     /// What a write to a row sets off, by row.
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.
@@ -110,6 +117,26 @@ impl<S: Copy> Terminals<S> {
     /// What function number `number` stands for.
     pub fn meaning(&self, number: u32) -> Option<S> {
         self.codes.iter().find(|(code, _)| u32::from(*code) == number).map(|(_, signal)| *signal)
+    }
+}
+
+/// A setting that takes the signal of a bit away, so that the bit does not act.
+#[derive(Debug)]
+pub struct Claim {
+    /// The row with the bit.
+    pub row: RowId,
+    /// The bit.
+    pub bit: u8,
+    /// The row with the setting.
+    pub by: RowId,
+    /// Which hex digit of it, from the right; `None` is the whole value.
+    pub digit: Option<u8>,
+}
+
+impl Claim {
+    /// Is it made, where the setting's row holds `value`?
+    pub fn is_made(&self, value: i64) -> bool {
+        code_in(value, self.digit) != 0
     }
 }
 

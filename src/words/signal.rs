@@ -27,6 +27,9 @@ words! {
         Moving "moving" "a motion is under way, from its start to the standstill",
         InPosition "in_position" "the axis stands where its last move was to end; off from the start of any motion",
         ZeroSpeed "zero_speed" "the speed is 0",
+        User0 "user_0" "bit 0 of the row that `signals.outputs.user` names",
+        User1 "user_1" "bit 1 of the same row",
+        User2 "user_2" "bit 2 of the same row",
     }
 }
 

@@ -30,10 +30,22 @@ pub struct RawInputs {
     pub words: Option<RawInputWords>,
     /// Rows whose bits are signals: row -> bit -> signal.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// Settings that take the signals of such bits away: row -> bit -> setting.
+    pub claims: BTreeMap<String, BTreeMap<u8, RawClaim>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
     pub commands: BTreeMap<String, BTreeMap<i64, String>>,
     /// Rows in which writing a 1 to a bit triggers an action. Every write triggers.
     pub triggers: BTreeMap<String, RawTriggers>,
+}
+
+/// A setting that takes the signal of a bit away. While it is not 0, the bit does not act.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawClaim {
+    /// The row with the setting.
+    pub register: String,
+    /// Which hex digit of it, counted from the right, from 0; default: the whole value.
+    pub digit: Option<u8>,
 }
 
 /// A row whose bits trigger actions.
@@ -60,6 +72,8 @@ pub struct RawOutputs {
     pub words: Option<RawOutputWords>,
     /// Rows whose bits show signals: row -> bit -> signal, or `not` and a signal.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// The row whose bits 0, 1 and 2 are the signals `user_0`, `user_1` and `user_2`.
+    pub user: Option<String>,
 }
 
 /// Physical terminals with assignable functions.

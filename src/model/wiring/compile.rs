@@ -114,6 +114,7 @@ impl Wirer<'_> {
             self.react(row, Reaction::Inputs, &path, At::Key);
             self.wiring.input_bits.push((row, map));
         }
+        self.claims(raw, &path.key("claims"));
         self.commands(&raw.commands, &path.key("commands"));
         self.triggers(&raw.triggers, &path.key("triggers"));
     }
@@ -150,6 +151,7 @@ impl Wirer<'_> {
             }
             self.show(row, Shows::Bits(map), &path, At::Key);
         }
+        self.user_outputs(raw.user.as_deref(), path);
     }
 
     /// Words of signals with their enable words: the rows of both.

@@ -53,6 +53,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
         mark(row);
     }
     wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
+    wiring.user_outputs.iter().copied().for_each(&mut mark);
     for (i, shows) in wiring.shows.iter().enumerate() {
         if shows.is_some() || wiring.reactions[i] != Reaction::None {
             mark(RowId(i as u16));
