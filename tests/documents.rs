@@ -8,7 +8,9 @@ use drivemu::model;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
-use drivemu::words::{Action, AlarmCause, Cause, Input, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{
+    Action, AlarmCause, Cause, Input, Modifier, Output, Quantity, Setting, Threshold, Word,
+};
 use serde_yaml::Value;
 use std::fmt::Write as _;
 
@@ -49,6 +51,13 @@ fn roles() -> String {
     out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move from its start speed, to the speed:\n\n");
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
+    }
+    let thresholds = "Numbers that outputs go by, whenever somebody looks: `quantities` says which row holds each, or \
+                      gives a number with its unit.";
+    section::<Threshold>(&mut out, "Thresholds", thresholds);
+    out.push('\n');
+    for threshold in Threshold::ALL {
+        self::units(&mut out, threshold.name(), &[threshold.dimension()]);
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");

@@ -92,12 +92,19 @@ fn each_output_shows_both_ways() {
             }
             Output::Ready | Output::Alarm => raise(&mut rig, AlarmCause::Overload),
             Output::Enabled | Output::BrakeOpen => give(&mut rig, Action::Enable),
-            Output::Moving | Output::ZeroSpeed => running(&mut rig),
+            Output::Moving | Output::ZeroSpeed | Output::SpeedAgrees | Output::Turning => {
+                running(&mut rig)
+            }
+            Output::SpeedReached => {
+                give(&mut rig, Action::Enable);
+                give(&mut rig, Action::RunStart);
+                rig.advance(Duration::from_millis(75));
+            }
             Output::User0 | Output::User1 | Output::User2 => {
                 let row = wiring(&rig).user_outputs.expect("it has such a row");
                 set_bit(&mut rig, row, output as u16 - Output::User0 as u16, true);
             }
-            Output::InPosition => {
+            Output::InPosition | Output::Arrived => {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::MoveStart);
                 rig.advance(Duration::from_secs(2));

@@ -256,5 +256,6 @@ impl Motor {
     }
 }
 
+mod look;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ use super::args::{ShowArgs, TableFormat};
 use super::output::print;
 use drivemu::bench::Library;
 use drivemu::model::{
-    Access, Applies, Choices, Counts, Kind, Model, Reaction, Row, RowId, Shows, load,
+    Access, Applies, Choices, Counts, Kind, Model, Number, Reaction, Row, RowId, Shows, load,
 };
 use drivemu::problem::render::render;
 use drivemu::shell::FileLibrary;
@@ -216,7 +216,10 @@ fn goes_by(model: &Model, id: RowId) -> String {
     let axis = &model.wiring.axis;
     let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
-    let names: Vec<_> = settings.chain(counts).collect();
+    let thresholds = model.wiring.thresholds.iter();
+    let thresholds =
+        thresholds.filter(|(_, it)| *it == Number::Row(id)).map(|(threshold, _)| threshold.name());
+    let names: Vec<_> = settings.chain(counts).chain(thresholds).collect();
     if names.is_empty() { "settings".into() } else { names.join(", ") }
 }
 

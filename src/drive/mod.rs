@@ -11,6 +11,7 @@ mod react;
 mod setup;
 mod show;
 mod signals;
+mod windows;
 
 pub use setup::Setup;
 

@@ -20,6 +20,11 @@ impl Drive {
         rpm(self.motor.speed(self.now), self.counts_per_rev())
     }
 
+    /// How fast a run or a jog was ordered to go, in revolutions a minute.
+    pub(super) fn rpm_ordered(&self) -> Option<f64> {
+        self.motor.speed_ordered().map(|speed| rpm(speed, self.counts_per_rev()))
+    }
+
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
     /// at the end of each motion.
     pub(super) fn settle(&mut self) {

@@ -26,7 +26,7 @@ impl Drive {
     pub(super) fn outputs(&self) -> Outputs {
         let enabled = self.servo.is_enabled();
         let user = self.model.wiring.user_outputs.map_or(0, |row| self.bank.raw(row));
-        Outputs::default()
+        let outputs = Outputs::default()
             .with(Output::Powered, true)
             .with(Output::Ready, self.servo.is_ready())
             .with(Output::Enabled, enabled)
@@ -34,10 +34,10 @@ impl Drive {
             .with(Output::BrakeOpen, enabled)
             .with(Output::Moving, self.motor.is_moving())
             .with(Output::InPosition, self.motor.is_in_position())
-            .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
             .with(Output::User0, user & 1 != 0)
             .with(Output::User1, user >> 1 & 1 != 0)
-            .with(Output::User2, user >> 2 & 1 != 0)
+            .with(Output::User2, user >> 2 & 1 != 0);
+        self.with_speeds(outputs)
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.

@@ -21,8 +21,8 @@ pub use load::{Choices, check, load};
 pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use wiring::{
-    Alarm, AlarmStop, Axis, Claim, Commands, Counts, Hold, InputWords, Monitor, OutputWords,
-    Reaction, Servo, Shown, Shows, Terminals, Triggers, Wiring,
+    Alarm, AlarmStop, Axis, Claim, Commands, Counts, Hold, InputWords, Monitor, Number,
+    OutputWords, Reaction, Servo, Shown, Shows, Terminals, Triggers, Wiring,
 };
 
 /// One drive of one vendor, as data.

@@ -7,6 +7,7 @@ mod compile;
 mod names;
 mod orders;
 mod quantities;
+mod thresholds;
 mod used;
 mod user;
 
@@ -17,7 +18,7 @@ use super::RowId;
 use super::line::code_in;
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting};
+use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Threshold};
 
 /// What a model is wired to. Lists are in the order of the file, and short.
 #[derive(Debug, Default)]
@@ -40,6 +41,8 @@ pub struct Wiring {
     pub shows: Vec<Option<Shows>>,
     /// Output words.
     pub output_words: Option<OutputWords>,
+    /// The numbers that outputs go by.
+    pub thresholds: Vec<(Threshold, Number)>,
     /// The row whose bits show as user-defined outputs.
     pub user_outputs: Option<RowId>,
     /// What a write to a row sets off, by row.
@@ -80,6 +83,15 @@ pub struct Shown {
     pub signal: Output,
     /// Show its opposite.
     pub inverted: bool,
+}
+
+/// A number that the model fixes, or that a row holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Number {
+    /// In the base unit of its dimension.
+    Fixed(f64),
+    /// In the row's unit.
+    Row(RowId),
 }
 
 /// What a bit of a terminal monitor shows.
@@ -285,6 +297,11 @@ impl Wiring {
     /// The alarm for `cause`, if the model has one.
     pub fn alarm(&self, cause: AlarmCause) -> Option<Alarm> {
         self.alarms.iter().find(|alarm| alarm.cause == cause).copied()
+    }
+
+    /// The number that `threshold` stands for.
+    pub fn threshold(&self, threshold: Threshold) -> Option<Number> {
+        self.thresholds.iter().find(|(it, _)| *it == threshold).map(|(_, number)| *number)
     }
 
     /// What `row` shows, or `None` if it holds what was written.

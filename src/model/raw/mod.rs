@@ -49,7 +49,8 @@ pub struct RawModel {
     /// One-word rows for every address of a span that no other row takes, by name of the area.
     #[serde(default)]
     pub fill: BTreeMap<String, RawFill>,
-    /// Numbers that the drive computes or goes by, each with the row that holds it, by role.
+    /// Numbers that the drive computes or goes by, each with the row that holds it, by role. What an
+    /// output goes by may be a number with its unit too (`20 rpm`).
     #[serde(default)]
     pub quantities: BTreeMap<String, String>,
     /// Where signals come from and where they show.

@@ -130,8 +130,16 @@ impl Wirer<'_> {
         let ends = [Input::Stop, Input::QuickStop].into_iter().filter(|it| inputs.contains(it));
         let orders = [Action::Stop, Action::QuickStop].into_iter();
         let orders = orders.filter(|it| actions.contains(it)).map(Word::name);
-        let outputs = [Output::Moving, Output::InPosition, Output::ZeroSpeed].into_iter();
-        let shown = outputs.filter(|it| self.is_shown(*it)).map(Word::name);
+        let outputs = [
+            Output::Moving,
+            Output::InPosition,
+            Output::ZeroSpeed,
+            Output::Turning,
+            Output::SpeedReached,
+            Output::SpeedAgrees,
+            Output::Arrived,
+        ];
+        let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
         names.into_iter().for_each(|name| self.without_motion(name, &path));
         let speed = super::Shows::Quantity(Quantity::SpeedActual);

@@ -30,6 +30,7 @@ pub(in crate::model) fn compile(
     let signals = Path::root().key("signals");
     wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
+    wirer.thresholds_fit();
     wirer.line(&raw.line);
     wirer.servo(raw);
     wirer.axis(raw.axis.as_ref());

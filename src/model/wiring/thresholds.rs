@@ -1,0 +1,65 @@
+//! Numbers that outputs go by: out of rows or fixed, each with an output, each output with its numbers.
+
+use super::Number;
+use super::compile::Wirer;
+use crate::problem::{Path, Problem};
+use crate::units::Unit;
+use crate::words::{Output, Threshold, Word};
+
+/// An output with the number that it goes by, and whether it can do without.
+const USES: [(Output, Threshold, bool); 6] = [
+    (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
+    (Output::Turning, Threshold::TurningSpeed, false),
+    (Output::SpeedReached, Threshold::ReachedSpeed, false),
+    (Output::SpeedReached, Threshold::ReachedWindow, false),
+    (Output::SpeedAgrees, Threshold::AgreesWindow, false),
+    (Output::Arrived, Threshold::AgreesWindow, false),
+];
+
+impl Wirer<'_> {
+    /// `text` is a number with its unit, or a row.
+    pub(super) fn threshold(&mut self, threshold: Threshold, text: &str, path: &Path) {
+        let (name, want) = (threshold.name(), threshold.dimension());
+        let number = match Unit::parse(text).filter(|_| text.contains(' ')) {
+            Some(number) => {
+                if number.dimension != want {
+                    let symbols: Vec<_> = Unit::symbols_of(want).collect();
+                    let what =
+                        format!("`{name}` is in {}, and `{text}` is not", symbols.join(" or "));
+                    self.problems.push(Problem::value(path.clone(), what));
+                }
+                Number::Fixed(number.scale)
+            }
+            None => {
+                let Some(row) = self.row(text, path) else { return };
+                self.dimension(row, name, &[want], path);
+                Number::Row(row)
+            }
+        };
+        self.wiring.thresholds.push((threshold, number));
+    }
+
+    /// To be called when all that shows outputs is wired.
+    pub(super) fn thresholds_fit(&mut self) {
+        for (output, threshold, optional) in USES {
+            let there = self.wiring.threshold(threshold).is_some();
+            if self.is_shown(output) && !there && !optional {
+                let (output, name) = (output.name(), threshold.name());
+                let what = format!("`{output}` shows, but nothing says what `{name}` is");
+                let problem = Problem::key(Path::root().key("signals").key("outputs"), what);
+                let advice =
+                    format!("add `{name}: ROW`, or a number with its unit, to `quantities`");
+                self.problems.push(problem.advise(advice));
+            }
+        }
+        for (threshold, _) in self.wiring.thresholds.clone() {
+            let of = |it: &&(Output, Threshold, bool)| it.1 == threshold;
+            if !USES.iter().filter(of).any(|(output, ..)| self.is_shown(*output)) {
+                let name = threshold.name();
+                let what = format!("`{name}` changes nothing: no output that goes by it shows");
+                let path = Path::root().key("quantities").key(name);
+                self.problems.push(Problem::key(path, what).advise("show one, or leave it out"));
+            }
+        }
+    }
+}
