@@ -62,7 +62,8 @@ impl Bank {
     pub fn commit(&mut self, model: &Model, plan: &WritePlan) {
         for (row, raw) in plan.values() {
             self.set(row, raw);
-            if plan.layer() == Layer::RamAndStore && !model.map.row(row).volatile {
+            let it = model.map.row(row);
+            if (plan.layer() == Layer::RamAndStore || it.autosave) && !it.volatile {
                 self.store[usize::from(row.0)] = raw;
             }
         }

@@ -260,6 +260,7 @@ fn kept(model: &Model, row: &Row) -> String {
     let window = model.map.windows().iter().find(keeps);
     match (row.access, row.volatile, window) {
         (Access::Read, ..) => String::new(),
+        _ if row.autosave => "with every write".into(),
         (_, false, Some(window)) if window.base == 0 => "with every write".into(),
         (_, false, Some(window)) => format!("when written through window {}", window.name),
         (_, false, None) if stores => "when all values are stored".into(),

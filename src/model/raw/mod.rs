@@ -162,6 +162,7 @@ pub const KEYS: &[&str] = &[
     "applies",
     "assumed",
     "at",
+    "autosave",
     "axis",
     "base",
     "baud",
