@@ -2,6 +2,8 @@
 //!
 //! `UPDATE_DOCS=1 cargo test` writes the generated ones anew.
 
+mod drives;
+
 use crate::expect::{read, root, same};
 use crate::kit::Files;
 use drivemu::model;

@@ -95,6 +95,7 @@ fn each_output_shows_both_ways() {
             Output::Moving | Output::ZeroSpeed | Output::SpeedAgrees | Output::Turning => {
                 running(&mut rig)
             }
+            Output::Coincides | Output::Near => underway(&mut rig),
             Output::SpeedReached => {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::RunStart);
@@ -129,6 +130,11 @@ fn each_quantity_shows() {
                 let value = rig.drive().show(row) as i64;
                 assert_eq!((value, rig.drive().quantity(quantity)), (600, 60), "in tenths");
                 continue;
+            }
+            Quantity::ErrorFollowing => {
+                underway(&mut rig);
+                // 262144 counts/s by a gain of 100 1/s, less what a ramp of 1310720 counts/s2 is behind that.
+                2490
             }
             Quantity::AlarmCode => {
                 raise(&mut rig, AlarmCause::Overload);
@@ -207,6 +213,13 @@ fn acme(spec: &DeviceSpec) -> Rig {
 fn running(rig: &mut Rig) {
     give(rig, Action::Enable);
     give(rig, Action::RunStart);
+    rig.advance(Duration::from_millis(200));
+}
+
+/// Lets it move for 200 ms.
+fn underway(rig: &mut Rig) {
+    give(rig, Action::Enable);
+    give(rig, Action::MoveStart);
     rig.advance(Duration::from_millis(200));
 }
 

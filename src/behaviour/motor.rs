@@ -4,11 +4,15 @@
 //! is the only deadline. Speeds and slopes come with the order and hold until the next one, so a
 //! deceleration written during a motion counts from the next motion on.
 //!
-//! Deliberately absent: following error, limits, homing.
+//! In a move, where the position is controlled, the axis runs behind its trajectory by a lag, which goes along to the
+//! stop that may end it. A run, a jog or a coasting axis has none: it starts where the axis is. A move that takes its
+//! place commands as far ahead as the axis is to be behind, so that it goes on at its speed.
+//!
+//! Deliberately absent: limits, homing.
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
-use crate::motion::{Move, State, Trajectory};
+use crate::motion::{Lag, Move, State, Trajectory};
 use crate::time::{Duration, Instant};
 
 /// A speed and how to get to it and from it; counts per second, the sign is the direction, and counts per
@@ -40,6 +44,10 @@ pub struct Wants {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor {
     trajectory: Trajectory,
+    /// How far the axis is behind it.
+    lag: Lag,
+    /// How fast a move makes up for that, 1/s; `None` at once.
+    gain: Option<f64>,
     phase: Phase,
     /// Slope of a stop, from the order that started the motion.
     decel: f64,
@@ -55,9 +63,11 @@ pub struct Motor {
 
 impl Motor {
     /// Standing at `position`, without power.
-    pub fn standing(now: Instant, position: f64, coast: Duration) -> Self {
+    pub fn standing(now: Instant, position: f64, coast: Duration, gain: Option<f64>) -> Self {
         Self {
             trajectory: Trajectory::rest(now, position),
+            lag: Lag::NONE,
+            gain,
             phase: Phase::Standing,
             decel: 0.0,
             coast,
@@ -68,17 +78,7 @@ impl Motor {
         }
     }
 
-    /// The last whole count reached, in the machine's coordinate.
-    pub fn position(&self, now: Instant) -> i64 {
-        self.trajectory.position(now)
-    }
-
-    /// Counts per second.
-    pub fn speed(&self, now: Instant) -> f64 {
-        self.trajectory.speed(now)
-    }
-
-    /// Position and speed as they are, not in whole counts.
+    /// Position and speed as they are commanded, not in whole counts.
     pub fn state(&self, now: Instant) -> State {
         self.trajectory.state(now)
     }
@@ -86,11 +86,6 @@ impl Motor {
     /// Is a motion under way?
     pub fn is_moving(&self) -> bool {
         self.phase != Phase::Standing
-    }
-
-    /// Does it stand where its last move was to end?
-    pub fn is_in_position(&self) -> bool {
-        self.in_position
     }
 
     /// When the motion ends by itself.
@@ -103,7 +98,7 @@ impl Motor {
         if self.deadline().is_some_and(|end| end <= now) {
             self.in_position = self.phase == Phase::Moving;
             self.phase = Phase::Standing;
-            tell(Stage::Stands(self.position(now)));
+            tell(Stage::Stands(self.trajectory.position(now)));
         }
     }
 
@@ -140,8 +135,8 @@ impl Motor {
         tell: &mut impl FnMut(Stage),
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
-        let target = target(self.position(now));
-        let trajectory = Trajectory::to_position(now, self.state(now), target, how);
+        let target = target(self.trajectory.position(now));
+        let trajectory = Trajectory::to_position(now, self.lead(now).0, target, how);
         self.decel = how.decel;
         self.begin(now, trajectory, Phase::Moving, Stage::Moves(target), tell);
         Ok(())
@@ -183,6 +178,18 @@ impl Motor {
         self.halt(now, tell);
     }
 
+    /// Where the command of a move starts, and how far the axis is behind it.
+    fn lead(&self, now: Instant) -> (State, Lag) {
+        let state = self.state(now);
+        match self.gain {
+            Some(gain) if self.lag == Lag::NONE => {
+                let ahead = State { position: state.position + state.speed / gain, ..state };
+                (ahead, Lag::at_speed(gain, state.speed))
+            }
+            _ => (state, self.lag.carried(&self.trajectory, now)),
+        }
+    }
+
     fn may_start(&self, interrupt: bool) -> Result<(), Ignored> {
         match () {
             () if !self.power => Err(Ignored::PowerOff),
@@ -213,7 +220,7 @@ impl Motor {
         tell: &mut impl FnMut(Stage),
     ) {
         let Ramp { speed, accel, decel } = ramp;
-        let trajectory = Trajectory::to_speed(now, self.state(now), speed, accel, decel);
+        let trajectory = Trajectory::to_speed(now, self.feedback(now), speed, accel, decel);
         self.decel = decel;
         self.begin(now, trajectory, phase, stage, tell);
     }
@@ -234,7 +241,7 @@ impl Motor {
 
     fn coast(&mut self, now: Instant, tell: &mut impl FnMut(Stage)) {
         if self.is_moving() && self.phase != Phase::Coasting {
-            let trajectory = Trajectory::coast(now, self.state(now), self.coast);
+            let trajectory = Trajectory::coast(now, self.feedback(now), self.coast);
             self.begin(now, trajectory, Phase::Coasting, Stage::Coasts, tell);
         }
     }
@@ -249,6 +256,11 @@ impl Motor {
     ) {
         // An order takes the place of a jog for good: its level may still be there when the order is done.
         self.jog_spent |= matches!(self.phase, Phase::Jogging { .. }) && phase == Phase::Moving;
+        self.lag = match phase {
+            Phase::Moving => self.lead(now).1,
+            Phase::Standing | Phase::Stopping => self.lag.carried(&self.trajectory, now),
+            Phase::Running | Phase::Jogging { .. } | Phase::Coasting => Lag::NONE,
+        };
         (self.trajectory, self.phase, self.in_position) = (trajectory, phase, false);
         tell(stage);
         // What takes no time is over.

@@ -68,7 +68,7 @@ impl Drive {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
             silence: Hold::default(),
-            motor: Motor::standing(now, 0.0, model.wiring.axis.coast),
+            motor: Motor::standing(now, 0.0, model.wiring.axis.coast, None),
             zero: 0,
             model,
             station: setup.station,
@@ -247,8 +247,8 @@ impl Drive {
         }
         let servo = self.model.wiring.servo;
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
-        let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
-        self.motor = Motor::standing(now, position, coast);
+        let (position, axis) = (self.motor.feedback(now).position, &self.model.wiring.axis);
+        self.motor = Motor::standing(now, position, axis.coast, axis.position_gain);
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         self.inputs = Inputs::default();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);

@@ -33,6 +33,7 @@ impl Drive {
         match quantity {
             Quantity::PositionActual => self.position(),
             Quantity::SpeedActual => self.rpm().round() as i64,
+            Quantity::ErrorFollowing => self.motor.deviation(self.now).round() as i64,
             Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),

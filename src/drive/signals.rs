@@ -33,11 +33,10 @@ impl Drive {
             .with(Output::Alarm, self.servo.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
             .with(Output::Moving, self.motor.is_moving())
-            .with(Output::InPosition, self.motor.is_in_position())
             .with(Output::User0, user & 1 != 0)
             .with(Output::User1, user >> 1 & 1 != 0)
             .with(Output::User2, user >> 2 & 1 != 0);
-        self.with_speeds(outputs)
+        self.with_positions(self.with_speeds(outputs))
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.

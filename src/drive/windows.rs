@@ -2,6 +2,7 @@
 
 use super::Drive;
 use crate::model::Number;
+use crate::time::Duration;
 use crate::words::{Output, Outputs, Threshold};
 
 impl Drive {
@@ -12,7 +13,7 @@ impl Drive {
         let reached = limit(Threshold::ReachedSpeed).zip(limit(Threshold::ReachedWindow));
         let agrees = ordered.zip(limit(Threshold::AgreesWindow));
         let agrees = agrees.is_some_and(|(to, window)| (speed - to).abs() < window);
-        let arrived = if ordered.is_some() { agrees } else { self.motor.is_in_position() };
+        let arrived = if ordered.is_some() { agrees } else { self.is_in_position() };
         outputs
             .with(Output::ZeroSpeed, speed.abs() <= limit(Threshold::ZeroSpeed).unwrap_or(0.0))
             .with(
@@ -25,6 +26,24 @@ impl Drive {
             )
             .with(Output::SpeedAgrees, agrees)
             .with(Output::Arrived, arrived)
+    }
+
+    /// `outputs` with those that are about positions.
+    pub(super) fn with_positions(&self, outputs: Outputs) -> Outputs {
+        let deviation = self.motor.deviation(self.now).abs();
+        let within = |it| self.threshold(it).is_some_and(|window| deviation <= window);
+        outputs
+            .with(Output::InPosition, self.is_in_position())
+            .with(Output::Coincides, within(Threshold::CoincidesWindow))
+            .with(Output::Near, within(Threshold::NearWindow))
+    }
+
+    fn is_in_position(&self) -> bool {
+        let window = self.threshold(Threshold::PositionWindow).unwrap_or(0.0);
+        let settle = self.threshold(Threshold::PositionSettle).unwrap_or(0.0);
+        // Rows hold no times that are negative or beyond a few years.
+        let settle = Duration::try_from_secs_f64(settle).unwrap_or_default();
+        self.motor.is_in_position(self.now, window, settle)
     }
 
     /// The number in the base unit of its dimension.

@@ -241,6 +241,8 @@ pub struct Axis {
     pub counts_per_rev: Counts,
     /// How long it runs out without power.
     pub coast: Duration,
+    /// How fast a move makes up for a deviation, 1/s; `None` where it has none.
+    pub position_gain: Option<f64>,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
 }
@@ -258,7 +260,7 @@ impl Default for Axis {
     /// Nothing moves it.
     fn default() -> Self {
         let coast = Duration::from_millis(200);
-        Self { counts_per_rev: Counts::Fixed(1), coast, settings: Vec::new() }
+        Self { counts_per_rev: Counts::Fixed(1), coast, position_gain: None, settings: Vec::new() }
     }
 }
 

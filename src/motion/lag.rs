@@ -28,6 +28,12 @@ impl Lag {
         Self { gain: (gain > 0.0 && gain.is_finite()).then(|| gain.max(0.01)), deviation: 0.0 }
     }
 
+    /// The same, as far behind as it gets to be at `speed`, in counts per second.
+    pub fn at_speed(gain: f64, speed: f64) -> Self {
+        let lag = Self::new(gain);
+        Self { deviation: lag.gain.map_or(0.0, |gain| speed / gain), ..lag }
+    }
+
     /// The lag of the trajectory that replaces `old` at `now`: the deviation does not jump.
     #[must_use]
     pub fn carried(self, old: &Trajectory, now: Instant) -> Self {

@@ -8,6 +8,7 @@ words! {
     Quantity {
         PositionActual "position.actual" "where the axis stands, in the drive's coordinate",
         SpeedActual "speed.actual" "how fast the axis goes; negative in the negative direction",
+        ErrorFollowing "error.following" "how far the axis is behind the command of a move, in counts; negative in the negative direction",
         AlarmCode "alarm.code" "the vendor's number of the present alarm, 0 without one",
         UnitInUse "unit.in_use" "the unit address that the drive answers to",
         UnitSwitches "unit.switches" "the address switches as they are set",
@@ -18,7 +19,7 @@ impl Quantity {
     /// What it measures; the row's unit must fit.
     pub fn dimension(self) -> Dimension {
         match self {
-            Self::PositionActual => Dimension::Position,
+            Self::PositionActual | Self::ErrorFollowing => Dimension::Position,
             Self::SpeedActual => Dimension::Speed,
             Self::AlarmCode | Self::UnitInUse | Self::UnitSwitches => Dimension::None,
         }

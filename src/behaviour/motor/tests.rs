@@ -47,7 +47,7 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let motor = Motor::standing(Instant::ZERO, 0.0, COAST);
+        let motor = Motor::standing(Instant::ZERO, 0.0, COAST, Some(50.0));
         let wants = Wants { power: true, ..Wants::default() };
         let mut bench = Self { motor, wants, now: Instant::ZERO, told: Vec::new() };
         bench.follow();
@@ -127,7 +127,7 @@ proptest! {
         let mut last: Option<(Instant, State)> = None;
         let mut worst = 0.0f64;
         play(&orders, 1, |bench| {
-            let state = bench.motor.state(bench.now);
+            let state = bench.motor.feedback(bench.now);
             if let Some((at, was)) = last {
                 let most = 4000.0 * bench.now.since(at).as_secs_f64();
                 worst = worst.max((state.position - was.position).abs() - most);
@@ -143,7 +143,7 @@ proptest! {
         let mut last: Option<(Instant, f64)> = None;
         let mut worst = 0.0f64;
         play(&orders, 1, |bench| {
-            let speed = bench.motor.speed(bench.now);
+            let speed = bench.motor.feedback(bench.now).speed;
             if let Some((at, was)) = last {
                 // To coast takes 200 ms from whatever speed, which is no steeper than the ramps here.
                 worst = worst.max((speed - was).abs() - 20_000.0 * bench.now.since(at).as_secs_f64());

@@ -204,6 +204,7 @@ pub const KEYS: &[&str] = &[
     "note",
     "options",
     "outputs",
+    "position_gain",
     "positions",
     "prefix",
     "products",

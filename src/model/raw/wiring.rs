@@ -177,6 +177,9 @@ pub struct RawAxis {
     /// How long the axis runs out when its power stage goes off while it moves, from whatever speed
     /// (`200ms`, which is the default); `0s` stands at once.
     pub coast: Option<String>,
+    /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
+    /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
+    pub position_gain: Option<f64>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }

@@ -73,6 +73,11 @@ impl Wirer<'_> {
         if let Some(coast) = self.duration(raw.coast.as_deref(), &path.key("coast")) {
             self.wiring.axis.coast = coast;
         }
+        if raw.position_gain.is_some_and(|gain| !(0.1..=10_000.0).contains(&gain)) {
+            let what = "a position gain lies between 0.1 and 10000 1/s";
+            self.problems.push(Problem::value(path.key("position_gain"), what));
+        }
+        self.wiring.axis.position_gain = raw.position_gain;
     }
 
     fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
@@ -138,6 +143,8 @@ impl Wirer<'_> {
             Output::SpeedReached,
             Output::SpeedAgrees,
             Output::Arrived,
+            Output::Coincides,
+            Output::Near,
         ];
         let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();

@@ -34,6 +34,7 @@ pub(in crate::model) fn compile(
     wirer.line(&raw.line);
     wirer.servo(raw);
     wirer.axis(raw.axis.as_ref());
+    wirer.deviation_fits();
     wirer.alarms(raw);
     wirer.alarm_history(&raw.alarm_history);
     wirer.alarms_fit(raw);

@@ -1,19 +1,25 @@
 //! Numbers that outputs go by: out of rows or fixed, each with an output, each output with its numbers.
 
-use super::Number;
 use super::compile::Wirer;
+use super::{Number, Shows};
 use crate::problem::{Path, Problem};
 use crate::units::Unit;
-use crate::words::{Output, Threshold, Word};
+use crate::words::{Output, Quantity, Threshold, Word};
 
 /// An output with the number that it goes by, and whether it can do without.
-const USES: [(Output, Threshold, bool); 6] = [
+const USES: [(Output, Threshold, bool); 12] = [
     (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
     (Output::Turning, Threshold::TurningSpeed, false),
     (Output::SpeedReached, Threshold::ReachedSpeed, false),
     (Output::SpeedReached, Threshold::ReachedWindow, false),
     (Output::SpeedAgrees, Threshold::AgreesWindow, false),
     (Output::Arrived, Threshold::AgreesWindow, false),
+    (Output::Arrived, Threshold::PositionWindow, true),
+    (Output::Arrived, Threshold::PositionSettle, true),
+    (Output::InPosition, Threshold::PositionWindow, true),
+    (Output::InPosition, Threshold::PositionSettle, true),
+    (Output::Coincides, Threshold::CoincidesWindow, false),
+    (Output::Near, Threshold::NearWindow, false),
 ];
 
 impl Wirer<'_> {
@@ -37,6 +43,39 @@ impl Wirer<'_> {
             }
         };
         self.wiring.thresholds.push((threshold, number));
+    }
+
+    /// What shows a deviation, or goes by it, where there is none. To be called when the axis is wired.
+    pub(super) fn deviation_fits(&mut self) {
+        if self.wiring.axis.position_gain.is_some() {
+            return;
+        }
+        let signals = Path::root().key("signals");
+        let outputs = [Output::Coincides, Output::Near].into_iter();
+        let mut names: Vec<_> = outputs
+            .filter(|it| self.is_shown(*it))
+            .map(|it| (it.name(), signals.clone()))
+            .collect();
+        let quantities = Path::root().key("quantities");
+        let following = Quantity::ErrorFollowing.name();
+        if self
+            .wiring
+            .shows
+            .iter()
+            .flatten()
+            .any(|it| *it == Shows::Quantity(Quantity::ErrorFollowing))
+        {
+            names.push((following, quantities.key(following)));
+        }
+        let window = Threshold::PositionWindow;
+        if self.wiring.threshold(window).is_some() {
+            names.push((window.name(), quantities.key(window.name())));
+        }
+        for (name, path) in names {
+            let what = format!("`{name}` changes nothing: the axis is never behind its command");
+            let problem = Problem::key(path, what);
+            self.problems.push(problem.advise("give `axis` a `position_gain`, or leave it out"));
+        }
     }
 
     /// To be called when all that shows outputs is wired.
