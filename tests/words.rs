@@ -3,6 +3,7 @@
 //! The `match`es have no `_` arm on purpose: a new word does not compile until it is tested here.
 
 mod motion;
+mod thresholds;
 
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
