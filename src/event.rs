@@ -186,6 +186,8 @@ pub enum Change {
         /// Why it was raised.
         cause: AlarmCause,
     },
+    /// The alarms of the past are forgotten.
+    AlarmHistoryCleared,
     /// An input word was not refreshed in time and returned to 0.
     WordExpired {
         /// The word.

@@ -2,6 +2,8 @@
 //!
 //! `UPDATE_DOCS=1 cargo test` writes the generated ones anew.
 
+mod drives;
+
 use crate::expect::{read, root, same};
 use crate::kit::Files;
 use drivemu::model;
@@ -11,7 +13,7 @@ use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
     Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, LimitRule, LimitSource,
     LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace, Quantity, Setting,
-    SoftLimitRule, Then, Word,
+    SoftLimitRule, Then, Threshold, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -53,6 +55,13 @@ fn roles() -> String {
     out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move or run from its start speed, to the speed:\n\n");
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
+    }
+    let thresholds = "Numbers that outputs go by, whenever somebody looks: `quantities` says which row holds each, or \
+                      gives a number with its unit.";
+    section::<Threshold>(&mut out, "Thresholds", thresholds);
+    out.push('\n');
+    for threshold in Threshold::ALL {
+        self::units(&mut out, threshold.name(), &[threshold.dimension()]);
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");

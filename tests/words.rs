@@ -4,6 +4,7 @@
 
 mod motion;
 mod segment;
+mod thresholds;
 
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
@@ -171,8 +172,20 @@ fn each_output_shows_both_ways() {
             }
             Output::Ready | Output::Alarm => raise(&mut rig, AlarmCause::Overload),
             Output::Enabled | Output::BrakeOpen => give(&mut rig, Action::Enable),
-            Output::Moving | Output::ZeroSpeed => running(&mut rig),
-            Output::InPosition => {
+            Output::Moving | Output::ZeroSpeed | Output::SpeedAgrees | Output::Turning => {
+                running(&mut rig)
+            }
+            Output::Coincides | Output::Near => underway(&mut rig),
+            Output::SpeedReached => {
+                give(&mut rig, Action::Enable);
+                give(&mut rig, Action::RunStart);
+                rig.advance(Duration::from_millis(75));
+            }
+            Output::User0 | Output::User1 | Output::User2 => {
+                let row = wiring(&rig).user_outputs.expect("it has such a row");
+                set_bit(&mut rig, row, output as u16 - Output::User0 as u16, true);
+            }
+            Output::InPosition | Output::Arrived => {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::MoveStart);
                 rig.advance(Duration::from_secs(2));
@@ -219,6 +232,11 @@ fn each_quantity_shows() {
                 assert_eq!((value, rig.drive().quantity(quantity)), (600, 60), "in tenths");
                 continue;
             }
+            Quantity::ErrorFollowing => {
+                underway(&mut rig);
+                // 262144 counts/s by a gain of 100 1/s, less what a ramp of 1310720 counts/s2 is behind that.
+                2490
+            }
             Quantity::AlarmCode => {
                 raise(&mut rig, AlarmCause::Overload);
                 0x41
@@ -247,11 +265,13 @@ fn each_action_acts() {
         match action {
             Action::Release => give(&mut rig, Action::Enable),
             Action::AlarmReset => raise(&mut rig, AlarmCause::Overload),
+            Action::EncoderReset => raise(&mut rig, AlarmCause::Encoder),
             Action::Stop | Action::QuickStop => running(&mut rig),
             Action::HomeStart | Action::MoveStart | Action::RunStart => {
                 give(&mut rig, Action::Enable);
             }
             Action::Enable
+            | Action::ClearAlarmHistory
             | Action::ClearPosition
             | Action::StoreAll
             | Action::RestoreFactory
@@ -273,7 +293,8 @@ fn each_action_acts() {
             Action::RunStart => Change::Runs { mrpm: 60_000 },
             Action::Enable => Change::Enabled(true),
             Action::Release => Change::Enabled(false),
-            Action::AlarmReset => Change::AlarmCleared,
+            Action::AlarmReset | Action::EncoderReset => Change::AlarmCleared,
+            Action::ClearAlarmHistory => Change::AlarmHistoryCleared,
             Action::ClearPosition => Change::PositionCleared,
             Action::StoreAll => Change::Stored,
             Action::RestoreFactory => Change::FactoryRestored,
@@ -294,7 +315,7 @@ fn each_alarm_has_its_number() {
         assert!(rig.drive().output(Output::Alarm) && !rig.drive().output(Output::Ready));
         numbers.push(rig.drive().quantity(Quantity::AlarmCode));
     }
-    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x71, 0x72, 0x73, 0x99]);
+    assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x71, 0x72, 0x73, 0x81, 0x99]);
 }
 
 /// A drive with a run of 60 rpm, a move of 200000 counts and segments of 40000 and -45000 to make, unless
@@ -311,6 +332,13 @@ fn acme(spec: &DeviceSpec) -> Rig {
 fn running(rig: &mut Rig) {
     give(rig, Action::Enable);
     give(rig, Action::RunStart);
+    rig.advance(Duration::from_millis(200));
+}
+
+/// Lets it move for 200 ms.
+fn underway(rig: &mut Rig) {
+    give(rig, Action::Enable);
+    give(rig, Action::MoveStart);
     rig.advance(Duration::from_millis(200));
 }
 

@@ -89,10 +89,14 @@ impl Bank {
         self.saves = self.saves.saturating_add(1);
     }
 
-    /// Puts every value back as it left the factory, in force and kept. What was worn stays worn.
+    /// Puts every value back as it left the factory, in force and kept. What was worn stays worn, and alarms
+    /// that were raised are no values of somebody's: they stay on record.
     pub fn restore_factory(&mut self, model: &Model, station: usize) {
-        self.ram = factory(model, station);
+        let before = std::mem::replace(&mut self.ram, factory(model, station));
         self.store.clone_from(&self.ram);
+        for row in &model.wiring.alarm_history {
+            self.preset(model, *row, before[usize::from(row.0)]);
+        }
         self.saves = self.saves.saturating_add(1);
     }
 

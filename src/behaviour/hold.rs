@@ -1,17 +1,18 @@
-//! A word that a master must refresh: one write holds it for a while, then it falls back.
+//! What a master must refresh: it holds for a while, then it is over. An input word that falls back, or the
+//! patience of a drive that expects to be spoken to.
 //!
 //! This is how drives notice that their master fell silent.
 
 use crate::time::{Duration, Instant};
 
-/// The watchdog of one input word.
+/// One watchdog.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Hold {
     until: Option<(Instant, Duration)>,
 }
 
 impl Hold {
-    /// The word was written: it holds for `time` from `now` on, or for ever.
+    /// The master did its part: it holds for `time` from `now` on, or for ever.
     pub fn refresh(&mut self, now: Instant, time: Option<Duration>) {
         self.until = time.map(|time| (now + time, time));
     }
@@ -21,7 +22,7 @@ impl Hold {
         self.until = None;
     }
 
-    /// When the word falls back.
+    /// When it is over.
     pub fn deadline(&self) -> Option<Instant> {
         self.until.map(|(at, _)| at)
     }

@@ -4,19 +4,21 @@
 //! (`due.rs`): the trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the
 //! order and hold until the next one, so a deceleration written during a motion counts from the next motion on.
 //!
-//! The trajectory is what the axis is told. Where it is can be less: a hard stop holds it.
-//!
-//! Deliberately absent: following error.
+//! The trajectory is what the axis is told. Where it is can be less: a hard stop holds it, and in a move, where the
+//! position is controlled, it runs behind by a lag, which goes along to the stop that may end the move. A run, a jog, a
+//! homing or a coasting axis has no lag: it starts where the axis is. A move that takes its place commands as far ahead
+//! as the axis is to be behind, so that it goes on at its speed.
 
 mod due;
 mod home;
 mod limits;
+mod look;
 
 pub use home::HomeOrder;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
-use crate::motion::{Machine, Move, State, Trajectory, Way};
+use crate::motion::{Lag, Machine, Move, State, Trajectory, Way};
 use crate::time::{Duration, Instant};
 use crate::words::{HomeEnd, Inputs, LimitStop};
 use due::Due;
@@ -63,6 +65,10 @@ pub struct Wants {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor {
     trajectory: Trajectory,
+    /// How far the axis is behind it.
+    lag: Lag,
+    /// How fast a move makes up for that, 1/s; `None` at once.
+    gain: Option<f64>,
     phase: Phase,
     /// Where the motion goes in the end: the positive direction?
     forward: bool,
@@ -81,10 +87,18 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Standing at `position` of `machine`, without power.
-    pub fn standing(now: Instant, position: f64, coast: Duration, machine: Machine) -> Self {
+    /// Standing at `position` of `machine`, without power; `gain` is that of the position controller, 1/s.
+    pub fn standing(
+        now: Instant,
+        position: f64,
+        coast: Duration,
+        machine: Machine,
+        gain: Option<f64>,
+    ) -> Self {
         Self {
             trajectory: Trajectory::rest(now, position),
+            lag: Lag::NONE,
+            gain,
             phase: Phase::Standing,
             forward: true,
             decel: 0.0,
@@ -104,17 +118,7 @@ impl Motor {
         &self.machine
     }
 
-    /// The last whole count reached, in the machine's coordinate.
-    pub fn position(&self, now: Instant) -> i64 {
-        self.state(now).position.floor() as i64
-    }
-
-    /// Counts per second.
-    pub fn speed(&self, now: Instant) -> f64 {
-        self.state(now).speed
-    }
-
-    /// Position and speed as they are, not in whole counts.
+    /// Position and speed as they are commanded, as far as a hard stop lets the axis go; not in whole counts.
     pub fn state(&self, now: Instant) -> State {
         self.machine.hold(self.trajectory.state(now))
     }
@@ -145,8 +149,8 @@ impl Motor {
         }
     }
 
-    /// Does it stand where its last move was to end?
-    pub fn is_in_position(&self) -> bool {
+    /// Has its last move or homing come to its end?
+    pub fn has_arrived(&self) -> bool {
         self.in_position
     }
 
@@ -196,10 +200,10 @@ impl Motor {
         interrupt: bool,
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
-        let here = self.position(now);
+        let here = self.state(now).position.floor() as i64;
         let target = target(here);
         self.may_go(now, target - here)?;
-        let trajectory = Trajectory::to_position(now, self.state(now), target, how);
+        let trajectory = Trajectory::to_position(now, self.lead(now).0, target, how);
         (self.decel, self.forward) = (how.decel, target >= here);
         self.begin(now, trajectory, Phase::Moving);
         self.told.push_back(Stage::Moves(target));
@@ -227,11 +231,41 @@ impl Motor {
         self.advance(now);
     }
 
+    /// Slows down to a standstill with a slope of its own.
+    pub fn stop_with(&mut self, now: Instant, decel: f64) {
+        self.jog_spent = true;
+        if self.wants.power && self.is_moving() {
+            self.lose_origin(HomeEnd::Stopped);
+            let trajectory = Trajectory::stop(now, self.state(now), decel);
+            self.begin(now, trajectory, Phase::Stopping);
+            self.told.push_back(Stage::Stops);
+            self.advance(now);
+        }
+    }
+
     /// Stands at once.
     pub fn quick_stop(&mut self, now: Instant) {
         self.jog_spent = true;
         self.halt(now);
         self.advance(now);
+    }
+
+    /// Where the command of a move starts, and how far the axis is behind it.
+    fn lead(&self, now: Instant) -> (State, Lag) {
+        let state = self.state(now);
+        match self.gain {
+            Some(gain) if self.lag == Lag::NONE => {
+                let ahead = State { position: state.position + state.speed / gain, ..state };
+                (ahead, Lag::at_speed(gain, state.speed))
+            }
+            _ => (state, self.carried_lag(now)),
+        }
+    }
+
+    /// The lag as it goes along to the next trajectory, which starts where a hard stop lets the command be.
+    fn carried_lag(&self, now: Instant) -> Lag {
+        let behind = self.state(now).position - self.feedback(now).position;
+        self.lag.with_deviation(behind)
     }
 
     /// May a motion start right now, or take the place of one under way where it may `interrupt`?
@@ -269,7 +303,7 @@ impl Motor {
 
     fn go(&mut self, now: Instant, ramp: Ramp, phase: Phase) {
         let Ramp { speed, accel, decel, start_speed } = ramp;
-        let from = self.state(now);
+        let from = self.feedback(now);
         let trajectory =
             Trajectory::to_speed_with_start(now, from, speed, accel, decel, start_speed);
         (self.decel, self.forward) = (decel, speed >= 0.0);
@@ -304,13 +338,18 @@ impl Motor {
     }
 
     fn run_out(&mut self, now: Instant) {
-        let trajectory = Trajectory::coast(now, self.state(now), self.coast);
+        let trajectory = Trajectory::coast(now, self.feedback(now), self.coast);
         self.begin(now, trajectory, Phase::Coasting);
     }
 
     fn begin(&mut self, now: Instant, trajectory: Trajectory, phase: Phase) {
         // An order takes the place of a jog for good: its level may still be there when the order is done.
         self.jog_spent |= matches!(self.phase, Phase::Jogging { .. }) && phase == Phase::Moving;
+        self.lag = match phase {
+            Phase::Moving => self.lead(now).1,
+            Phase::Standing | Phase::Stopping => self.carried_lag(now),
+            Phase::Running | Phase::Jogging { .. } | Phase::Homing | Phase::Coasting => Lag::NONE,
+        };
         (self.trajectory, self.phase, self.in_position) = (trajectory, phase, false);
         self.look_ahead(now);
     }

@@ -1,7 +1,8 @@
 //! Ready, enabled, tripped: whether the power stage is on, and why not.
 //!
 //! The power stage is on while somebody wants it on (a level, or a command that stays), the drive is
-//! initialised, no level releases it and no alarm stands. When an alarm goes, a want that still holds switches it on again.
+//! initialised, no level releases it and no alarm stands. Some alarms leave it on until the axis has stopped.
+//! When an alarm goes, a want that still holds switches it on again.
 
 use crate::event::Change;
 use crate::time::{Duration, Instant};
@@ -30,6 +31,8 @@ pub struct Servo {
     /// A command that asked for it and stays until another takes it back.
     latched: bool,
     alarm: Option<Trip>,
+    /// The power stage stays on despite the alarm, until the axis stands.
+    braking: bool,
     /// A cause that is still there, so that no reset helps.
     standing: Option<AlarmCause>,
     was_enabled: bool,
@@ -45,6 +48,7 @@ impl Servo {
             released: false,
             latched: enabled,
             alarm: None,
+            braking: false,
             standing: None,
             was_enabled: false,
         }
@@ -57,12 +61,18 @@ impl Servo {
 
     /// Is the power stage on?
     pub fn is_enabled(&self) -> bool {
-        self.is_ready() && (self.wanted || self.latched) && !self.released
+        let may = self.starts_until.is_none() && (self.alarm.is_none() || self.braking);
+        may && (self.wanted || self.latched) && !self.released
     }
 
     /// The alarm that stands.
     pub fn alarm(&self) -> Option<Trip> {
         self.alarm
+    }
+
+    /// Is the power stage on for no more than the stop after an alarm?
+    pub fn is_braking(&self) -> bool {
+        self.braking
     }
 
     /// When initialising ends.
@@ -91,12 +101,20 @@ impl Servo {
         self.settle(tell);
     }
 
-    /// Trips. The first alarm stays until it is cleared.
-    pub fn trip(&mut self, trip: Trip, tell: &mut impl FnMut(Change)) {
+    /// Trips; with `brakes` a power stage that is on stays on until [`Servo::braked`]. The first alarm stays
+    /// until it is cleared, but any later one can end the braking.
+    pub fn trip(&mut self, trip: Trip, brakes: bool, tell: &mut impl FnMut(Change)) {
+        self.braking = brakes && self.is_enabled();
         if self.alarm.is_none() {
             self.alarm = Some(trip);
             tell(Change::Alarm { cause: trip.cause, code: trip.code });
         }
+        self.settle(tell);
+    }
+
+    /// The axis has stopped: nothing keeps the power stage on any longer.
+    pub fn braked(&mut self, tell: &mut impl FnMut(Change)) {
+        self.braking = false;
         self.settle(tell);
     }
 
@@ -107,18 +125,28 @@ impl Servo {
 
     /// Clears the alarm if it can be cleared.
     pub fn reset(&mut self, tell: &mut impl FnMut(Change)) {
-        let Some(trip) = self.alarm else { return };
-        if !trip.resettable || self.standing == Some(trip.cause) {
-            tell(Change::AlarmStays { cause: trip.cause });
-            return;
+        self.clear(self.alarm.is_some_and(|trip| trip.resettable), tell);
+    }
+
+    /// Clears the alarm if it was raised for `cause`, also one that no other reset clears.
+    pub fn reset_of(&mut self, cause: AlarmCause, tell: &mut impl FnMut(Change)) {
+        self.clear(self.alarm.is_some_and(|trip| trip.cause == cause), tell);
+    }
+
+    fn clear(&mut self, clears: bool, tell: &mut impl FnMut(Change)) {
+        let Some(Trip { cause, .. }) = self.alarm else { return };
+        if !clears || self.standing == Some(cause) {
+            return tell(Change::AlarmStays { cause });
         }
-        self.alarm = None;
+        (self.alarm, self.braking) = (None, false);
         tell(Change::AlarmCleared);
         self.settle(tell);
     }
 
     fn settle(&mut self, tell: &mut impl FnMut(Change)) {
         let enabled = self.is_enabled();
+        // Whoever switches it off meanwhile ends the braking for good.
+        self.braking &= enabled;
         if enabled != self.was_enabled {
             self.was_enabled = enabled;
             tell(Change::Enabled(enabled));
@@ -153,7 +181,7 @@ mod tests {
     fn a_want_that_still_holds_enables_again_after_a_reset() {
         let (servo, changes) = after(|servo, mut tell| {
             servo.want(true, false, &mut tell);
-            servo.trip(FORCED, &mut tell);
+            servo.trip(FORCED, false, &mut tell);
             servo.reset(&mut tell);
         });
         let alarm = Change::Alarm { cause: AlarmCause::Forced, code: 9 };
@@ -171,15 +199,61 @@ mod tests {
     fn no_reset_while_the_cause_stands_or_where_none_helps() {
         let (servo, _) = after(|servo, mut tell| {
             servo.stand(Some(AlarmCause::Forced));
-            servo.trip(FORCED, &mut tell);
+            servo.trip(FORCED, false, &mut tell);
             servo.reset(&mut tell);
         });
         assert_eq!(servo.alarm(), Some(FORCED));
         let (servo, changes) = after(|servo, mut tell| {
-            servo.trip(Trip { resettable: false, ..FORCED }, &mut tell);
+            servo.trip(Trip { resettable: false, ..FORCED }, false, &mut tell);
             servo.reset(&mut tell);
         });
         assert!(servo.alarm().is_some());
         assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
+    }
+
+    #[test]
+    fn power_stays_on_until_it_has_braked() {
+        let (servo, changes) = after(|servo, mut tell| {
+            servo.want(true, false, &mut tell);
+            servo.trip(FORCED, true, &mut tell);
+            assert!(servo.is_enabled() && servo.is_braking() && !servo.is_ready());
+            servo.braked(&mut tell);
+        });
+        let alarm = Change::Alarm { cause: AlarmCause::Forced, code: 9 };
+        assert_eq!(changes, [Change::Enabled(true), alarm, Change::Enabled(false)]);
+        assert!(!servo.is_enabled());
+    }
+
+    #[test]
+    fn braking_ends_for_good() {
+        for released in [true, false] {
+            let (servo, _) = after(|servo, mut tell| {
+                servo.want(true, false, &mut tell);
+                servo.trip(FORCED, true, &mut tell);
+                match released {
+                    true => servo.want(true, true, &mut tell),
+                    false => servo.trip(FORCED, false, &mut tell),
+                }
+                servo.want(true, false, &mut tell);
+            });
+            assert!(!servo.is_enabled() && !servo.is_braking());
+        }
+    }
+
+    #[test]
+    fn a_reset_of_one_cause_leaves_the_others() {
+        let fixed = Trip { resettable: false, ..FORCED };
+        let (servo, changes) = after(|servo, mut tell| {
+            servo.reset_of(AlarmCause::Forced, &mut tell);
+            servo.trip(fixed, false, &mut tell);
+            servo.reset_of(AlarmCause::Encoder, &mut tell);
+        });
+        assert_eq!(servo.alarm(), Some(fixed));
+        assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
+        let (servo, _) = after(|servo, mut tell| {
+            servo.trip(fixed, false, &mut tell);
+            servo.reset_of(AlarmCause::Forced, &mut tell);
+        });
+        assert_eq!(servo.alarm(), None);
     }
 }

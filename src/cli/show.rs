@@ -5,7 +5,7 @@ use super::args::{ShowArgs, TableFormat};
 use super::output::print;
 use drivemu::bench::Library;
 use drivemu::model::{
-    Access, Applies, Choices, Counts, Kind, Model, Reaction, Row, RowId, Shows, load,
+    Access, Applies, Choices, Counts, Kind, Model, Number, Reaction, Row, RowId, Shows, load,
 };
 use drivemu::problem::render::render;
 use drivemu::shell::FileLibrary;
@@ -183,6 +183,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Shows::OutputWord(word) => format!("output word {}", word + 1),
         Shows::InputTerminals(_) => "input terminals".into(),
         Shows::OutputTerminals(_) => "output terminals".into(),
+        Shows::PastAlarm(_) => "alarms of the past".into(),
     });
     let reaction = || match model.wiring.reaction(id) {
         Reaction::None => goes_by(model, id),
@@ -205,6 +206,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
         }
         Reaction::Line => "how the drive is reached".into(),
+        Reaction::Timeout => "silence of the master".into(),
     };
     Some(shows.unwrap_or_else(reaction))
 }
@@ -215,7 +217,10 @@ fn goes_by(model: &Model, id: RowId) -> String {
     let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
     let segments = axis.segments.rows().any(|row| row == id).then_some("segments");
-    let names: Vec<_> = settings.chain(counts).chain(segments).collect();
+    let thresholds = model.wiring.thresholds.iter();
+    let thresholds =
+        thresholds.filter(|(_, it)| *it == Number::Row(id)).map(|(threshold, _)| threshold.name());
+    let names: Vec<_> = settings.chain(counts).chain(segments).chain(thresholds).collect();
     if names.is_empty() { "settings".into() } else { names.join(", ") }
 }
 
@@ -256,6 +261,7 @@ fn kept(model: &Model, row: &Row) -> String {
     let window = model.map.windows().iter().find(keeps);
     match (row.access, row.volatile, window) {
         (Access::Read, ..) => String::new(),
+        _ if row.autosave => "with every write".into(),
         (_, false, Some(window)) if window.base == 0 => "with every write".into(),
         (_, false, Some(window)) => format!("when written through window {}", window.name),
         (_, false, None) if stores => "when all values are stored".into(),

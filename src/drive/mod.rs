@@ -5,6 +5,7 @@
 //! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
 //! other drive.
 
+mod alarms;
 mod home;
 mod levels;
 mod memory;
@@ -15,11 +16,12 @@ mod settings;
 mod setup;
 mod show;
 mod signals;
+mod windows;
 
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Trip};
+use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -45,6 +47,8 @@ pub struct Drive {
     servo: Servo,
     /// Watchdogs of the input words.
     holds: Vec<Hold>,
+    /// Watchdog of the master: how long it may be silent.
+    silence: Hold,
     /// Signals on the input terminals, bit by bit.
     terminals: u16,
     inputs: Inputs,
@@ -85,7 +89,14 @@ impl Drive {
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
-            motor: Motor::standing(now, setup.start as f64, model.wiring.axis.coast, setup.machine),
+            silence: Hold::default(),
+            motor: Motor::standing(
+                now,
+                setup.start as f64,
+                model.wiring.axis.coast,
+                setup.machine,
+                None,
+            ),
             run: None,
             velocity: None,
             segment: 0,
@@ -142,6 +153,7 @@ impl Drive {
     /// Answers a request that arrived at `now`, or says why not.
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
         self.advance_to(now);
+        self.hear();
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
             return Err(self.refuse(Cause::Function, Detail::Function(*function)));
         }
@@ -204,6 +216,7 @@ impl Drive {
             self.motor.advance(self.now);
             self.tell_stages(None);
             self.expire_words();
+            self.end_silence();
             self.settle();
             self.advance_chain();
         }
@@ -212,7 +225,7 @@ impl Drive {
 
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
-        let holds = self.holds.iter().filter_map(Hold::deadline);
+        let holds = self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline);
         let ends = [self.servo.deadline(), self.motor.deadline(), self.chain.deadline()];
         holds.chain(ends.into_iter().flatten()).min()
     }
@@ -220,14 +233,6 @@ impl Drive {
     /// The next change that has not been told yet.
     pub fn poll_change(&mut self) -> Option<Change> {
         self.changes.pop_front()
-    }
-
-    /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.
-    fn trip(&mut self, cause: AlarmCause) -> bool {
-        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
-        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
-        self.servo.trip(trip, &mut |change| self.changes.push_back(change));
-        true
     }
 
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
@@ -287,12 +292,13 @@ impl Drive {
         let servo = self.model.wiring.servo;
         self.memory.power_on();
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
-        let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
-        self.motor = Motor::standing(now, position, coast, *self.motor.machine());
+        let (position, axis) = (self.motor.feedback(now).position, &self.model.wiring.axis);
+        let machine = *self.motor.machine();
+        self.motor = Motor::standing(now, position, axis.coast, machine, axis.position_gain);
         (self.home_done, self.never_enabled) = (false, true);
         (self.run, self.velocity, self.segment) = (None, None, 0);
         self.chain.end();
-        self.holds.iter_mut().for_each(Hold::stop);
+        self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         // What is active from the start has not risen.
         self.inputs = self.active_inputs();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
@@ -344,6 +350,8 @@ impl Drive {
             Action::Enable => self.servo.latch(true, tell),
             Action::Release => self.servo.latch(false, tell),
             Action::AlarmReset => self.servo.reset(tell),
+            Action::EncoderReset => self.servo.reset_of(AlarmCause::Encoder, tell),
+            Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
                 self.zero = self.motor.position(self.now);
                 self.changes.push_back(Change::PositionCleared);
@@ -357,6 +365,7 @@ impl Drive {
                 self.bank.restore_factory(&self.model, self.station);
                 // Input words are 0 then, so there is nothing left to fall back.
                 self.holds.iter_mut().for_each(Hold::stop);
+                self.hear();
                 self.changes.push_back(Change::FactoryRestored);
                 self.note_stored_all();
                 self.gather_inputs();

@@ -4,6 +4,7 @@
 use super::Drive;
 use crate::behaviour::{Stage, Wants};
 use crate::event::Change;
+use crate::model::AlarmStop;
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
 
 impl Drive {
@@ -17,9 +18,17 @@ impl Drive {
         rpm(self.motor.speed(self.now), self.counts_per_rev())
     }
 
+    /// How fast a run or a jog was ordered to go, in revolutions a minute.
+    pub(super) fn rpm_ordered(&self) -> Option<f64> {
+        self.motor.speed_ordered().map(|speed| rpm(speed, self.counts_per_rev()))
+    }
+
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
     /// at the end of each motion.
     pub(super) fn settle(&mut self) {
+        if self.servo.is_braking() && !self.motor.is_moving() {
+            self.servo.braked(&mut |change| self.changes.push_back(change));
+        }
         loop {
             let run = self.wanted_run();
             let wants = Wants { jog: run.map(|(_, ramp)| ramp), ..self.wants() };
@@ -61,6 +70,17 @@ impl Drive {
             changed |= self.follow_stage(stage);
         }
         changed
+    }
+
+    /// Stops the axis for an alarm.
+    pub(super) fn brake(&mut self, stop: AlarmStop) {
+        let decel = self.axis().slope(Setting::AlarmDecel, 0.0).unwrap_or(0.0);
+        match stop {
+            AlarmStop::Coast => {}
+            AlarmStop::Ramp => self.motor.stop_with(self.now, decel),
+            AlarmStop::Quick => self.motor.quick_stop(self.now),
+        }
+        self.tell_stages(None);
     }
 
     /// Carries out an order to the axis.
@@ -105,7 +125,8 @@ impl Drive {
         let has = |input| self.inputs.has(input);
         Wants {
             power: self.servo.is_enabled(),
-            stop: has(Input::Stop),
+            // What brakes for an alarm starts nothing.
+            stop: has(Input::Stop) || self.servo.is_braking(),
             quick_stop: has(Input::QuickStop),
             jog: None,
             switches: self.inputs,

@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::bank::WritePlan;
 use crate::event::Change;
-use crate::model::{Applies, Reaction};
+use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
 use crate::words::{Action, Modifiers, RowId};
 
@@ -22,6 +22,7 @@ impl Drive {
                     self.holds[usize::from(word)].refresh(self.now, time);
                 }
                 Reaction::Line => line = true,
+                Reaction::Timeout => self.hear(),
             }
         }
         if inputs {
@@ -63,7 +64,11 @@ impl Drive {
 
     /// How long a write of an input word holds; `None` for ever.
     fn hold_time(&self) -> Option<Duration> {
-        let hold = self.model.wiring.input_words.as_ref()?.hold.as_ref()?;
+        self.time_in(self.model.wiring.input_words.as_ref()?.hold.as_ref()?)
+    }
+
+    /// The time that a master has for something; `None` for ever.
+    pub(super) fn time_in(&self, hold: &model::Hold) -> Option<Duration> {
         match self.bank.value(&self.model, hold.row) {
             0 => hold.zero,
             time => hold.unit.duration(time),

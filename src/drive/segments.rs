@@ -48,7 +48,7 @@ impl Drive {
     /// the axis has arrived, the chain is told.
     pub(super) fn settle_segments(&mut self, free: bool) {
         let phase = self.motor.phase();
-        let arrived = self.motor.is_in_position();
+        let arrived = self.motor.has_arrived();
         if !(free && (arrived || phase == Phase::Moving)) {
             self.chain.end();
         } else if arrived {

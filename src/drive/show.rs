@@ -8,7 +8,7 @@ impl Drive {
     /// The bits of what `row` shows right now.
     pub fn show(&self, row: RowId) -> u32 {
         match self.model.wiring.shows(row) {
-            None => self.bank.raw(row),
+            None | Some(Shows::PastAlarm(_)) => self.bank.raw(row),
             Some(Shows::Quantity(quantity)) => self.show_quantity(row, *quantity),
             Some(Shows::Bits(bits)) => {
                 let outputs = self.outputs();
@@ -35,6 +35,7 @@ impl Drive {
             Quantity::SpeedActual => self.rpm().round() as i64,
             Quantity::SegmentRunning => self.segment.into(),
             Quantity::SegmentNext => self.next_segment().into(),
+            Quantity::ErrorFollowing => self.motor.deviation(self.now).round() as i64,
             Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),

@@ -3,7 +3,7 @@
 use super::Drive;
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
-use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs};
+use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
 
 impl Drive {
     /// Looks at every source again and tells the behaviours what changed.
@@ -37,15 +37,14 @@ impl Drive {
                 if forward { position > high } else { position < low }
             })
         };
-        Outputs::default()
+        let user = self.model.wiring.user_outputs.map_or(0, |row| self.bank.raw(row));
+        let outputs = Outputs::default()
             .with(Output::Powered, true)
             .with(Output::Ready, self.servo.is_ready())
             .with(Output::Enabled, enabled)
             .with(Output::Alarm, self.servo.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
             .with(Output::Moving, self.motor.is_moving())
-            .with(Output::InPosition, self.motor.is_in_position())
-            .with(Output::ZeroSpeed, self.motor.speed(self.now) == 0.0)
             .with(Output::HomeDone, self.home_done)
             .with(Output::AtLimitPos, self.inputs.has(Input::LimitPos))
             .with(Output::AtLimitNeg, self.inputs.has(Input::LimitNeg))
@@ -56,6 +55,10 @@ impl Drive {
             .with(Output::Segment2, self.segment & 4 != 0)
             .with(Output::Segment3, self.segment & 8 != 0)
             .with(Output::Segment4, self.segment & 16 != 0)
+            .with(Output::User0, user & 1 != 0)
+            .with(Output::User1, user >> 1 & 1 != 0)
+            .with(Output::User2, user >> 2 & 1 != 0);
+        self.with_positions(self.with_speeds(outputs))
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.
@@ -127,12 +130,19 @@ impl Drive {
         }
         for (row, bits) in &wiring.input_bits {
             for (bit, signal) in bits {
-                if is_set(*row, u16::from(*bit)) {
+                if is_set(*row, u16::from(*bit)) && !self.is_claimed(*row, *bit) {
                     inputs.insert(*signal);
                 }
             }
         }
         inputs
+    }
+
+    /// Is the signal of this bit somebody else's?
+    fn is_claimed(&self, row: RowId, bit: u8) -> bool {
+        let mut claims =
+            self.model.wiring.claims.iter().filter(|it| (it.row, it.bit) == (row, bit));
+        claims.any(|claim| claim.is_made(self.bank.value(&self.model, claim.by)))
     }
 
     fn normally_closed<S>(&self, terminals: &Terminals<S>) -> u32 {

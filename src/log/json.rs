@@ -150,6 +150,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Alarm { cause, code } => ("alarm", json!({"cause": cause.name(), "code": code})),
         Change::AlarmCleared => ("alarm_cleared", json!({})),
         Change::AlarmStays { cause } => ("alarm_stays", json!({"cause": cause.name()})),
+        Change::AlarmHistoryCleared => ("alarm_history_cleared", json!({})),
         Change::WordExpired { word, hold, held_ms } => {
             let map = &drive.model().map;
             let (word, hold) = (&map.row(*word).id, &map.row(*hold).id);

@@ -165,6 +165,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::AlarmStays { cause } => {
             format!("alarm reset without effect: {}", cause.about())
         }
+        Change::AlarmHistoryCleared => "alarm history cleared".into(),
         Change::WordExpired { word, hold, held_ms } => {
             let map = &drive.model().map;
             let held = f64::from(*held_ms) / 1000.0;

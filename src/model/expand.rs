@@ -109,6 +109,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
             applies: Default::default(),
             lock: None,
             volatile: false,
+            autosave: false,
             clears: false,
             word_order: None,
             name: number(&area.name, at),

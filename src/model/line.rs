@@ -228,6 +228,16 @@ fn within(
     }
 }
 
+/// Is there such a hex digit in a word?
+pub(super) fn has_digit(digit: Option<u8>, path: &Path, problems: &mut Vec<Problem>) -> bool {
+    let is_there = digit.is_none_or(|digit| digit <= 3);
+    if !is_there {
+        let what = "a word has hex digits 0 to 3, counted from the right";
+        problems.push(Problem::value(path.key("digit"), what));
+    }
+    is_there
+}
+
 /// Does each code have a value of the row, or of one hex digit of it, and the factory value a code?
 pub(super) fn coded<T>(
     row: Option<RowId>,
@@ -237,9 +247,7 @@ pub(super) fn coded<T>(
     path: &Path,
     problems: &mut Vec<Problem>,
 ) {
-    if digit.is_some_and(|digit| digit > 3) {
-        let what = "a word has hex digits 0 to 3, counted from the right";
-        problems.push(Problem::value(path.key("digit"), what));
+    if !has_digit(digit, path, problems) {
         return;
     }
     let Some(row) = row.map(|row| rows.map.row(row)) else { return };

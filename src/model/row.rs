@@ -30,6 +30,8 @@ pub struct Row {
     pub locked_while_enabled: bool,
     /// Never kept over power-off.
     pub volatile: bool,
+    /// Every write is kept over power-off.
+    pub autosave: bool,
     /// Returns to 0 once it has acted.
     pub clears: bool,
     /// Word order of its own.

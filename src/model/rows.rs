@@ -52,6 +52,7 @@ pub(super) fn compile(
     let rows: Vec<Row> = entries.iter().map(|entry| row(entry, problems)).collect();
     let windows = compile_windows(windows, problems);
     whole_pairs(&rows, &windows, problems);
+    autosaves(&entries, &windows, problems);
     Compiled { map: Map::new(rows, windows), paths, lost }
 }
 
@@ -147,6 +148,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         locked_while_enabled: raw.lock == Some(RawLock::Enabled),
         // What is 0 again once it has acted has nothing to keep.
         volatile: raw.volatile || raw.clears,
+        autosave: raw.autosave,
         clears: raw.clears,
         order: raw.word_order.map(order),
         name: raw.name.clone(),
@@ -172,14 +174,21 @@ fn reject_keys_without_effect(
         problems.push(Problem::key(path.key(key), what).advise("leave it out"));
     };
     if raw.access == RawAccess::R {
-        let of_writes =
-            [("lock", raw.lock.is_some()), ("clears", raw.clears), ("volatile", raw.volatile)];
+        let of_writes = [
+            ("lock", raw.lock.is_some()),
+            ("clears", raw.clears),
+            ("volatile", raw.volatile),
+            ("autosave", raw.autosave),
+        ];
         for (key, _) in of_writes.into_iter().filter(|(_, set)| *set) {
             reject(key, "a row that is read only");
         }
     }
     if raw.access != RawAccess::R && raw.clears && raw.volatile {
         reject("volatile", "a row that clears itself");
+    }
+    if (raw.volatile || raw.clears) && raw.autosave {
+        reject("autosave", "a row that is never kept");
     }
     if raw.word_order.is_some() && kind.words() == 1 {
         reject("word_order", "a row of one word");
@@ -225,6 +234,21 @@ fn whole_pairs(rows: &[Row], windows: &[Window], problems: &mut Vec<Problem>) {
             let path = Path::root().key("windows").key(&window.name).key("span");
             let what = format!("the span cuts the pair {} in two", row.id);
             problems.push(Problem::value(path, what).advise("move its end by one"));
+        }
+    }
+}
+
+/// Where every window saves what it writes, no row needs to.
+fn autosaves(entries: &[Entry], windows: &[Window], problems: &mut Vec<Problem>) {
+    let mut told: Vec<&Path> = Vec::new();
+    for Entry { path, row, .. } in entries.iter().filter(|entry| entry.row.autosave) {
+        let saves = |window: &Window| {
+            window.layer == Layer::RamAndStore || !(window.span.0..=window.span.1).contains(&row.at)
+        };
+        if windows.iter().all(saves) && !told.contains(&path) {
+            told.push(path);
+            let what = "`autosave` changes nothing where every write is saved";
+            problems.push(Problem::key(path.key("autosave"), what).advise("leave it out"));
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
+mod alarms;
 mod axis;
 mod chain;
 mod choice;
+mod claims;
 mod compile;
 mod homing;
 mod limits;
@@ -12,7 +14,9 @@ mod quantities;
 mod segment_rows;
 mod segment_signals;
 mod segments;
+mod thresholds;
 mod used;
+mod user;
 mod wired;
 
 pub use chain::{ChainRules, Link};
@@ -28,7 +32,7 @@ use crate::time::Duration;
 use crate::units::Unit;
 use crate::words::{
     Action, AlarmCause, HomeStarter, IndexRule, Input, LimitRule, LimitSource, LimitStop, Method,
-    Modifier, OriginPosition, OriginStop, Output, Quantity, Setting, SoftLimitRule,
+    Modifier, OriginPosition, OriginStop, Output, Quantity, Setting, SoftLimitRule, Threshold,
 };
 use std::collections::BTreeMap;
 
@@ -43,6 +47,8 @@ pub struct Wiring {
     pub input_words: Option<InputWords>,
     /// Rows whose bits are input signals.
     pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
+    /// What takes the signals of such bits away.
+    pub claims: Vec<Claim>,
     /// Rows in which a written value triggers an action.
     pub commands: Vec<Commands>,
     /// Rows whose bits trigger actions.
@@ -53,6 +59,10 @@ pub struct Wiring {
     pub shows: Vec<Option<Shows>>,
     /// Output words.
     pub output_words: Option<OutputWords>,
+    /// The numbers that outputs go by.
+    pub thresholds: Vec<(Threshold, Number)>,
+    /// The row whose bits show as user-defined outputs.
+    pub user_outputs: Option<RowId>,
     /// What a write to a row sets off, by row.
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.
@@ -65,6 +75,10 @@ pub struct Wiring {
     pub limits: Limits,
     /// Alarms by cause.
     pub alarms: Vec<Alarm>,
+    /// Rows with the numbers of the alarms that were raised, newest first.
+    pub alarm_history: Vec<RowId>,
+    /// How long the master may be silent; `None` for ever.
+    pub timeout: Option<Hold>,
 }
 
 /// What a row shows instead of what was written.
@@ -80,6 +94,8 @@ pub enum Shows {
     InputTerminals(Monitor),
     /// The output terminals.
     OutputTerminals(Monitor),
+    /// The `n`th alarm of the past, from 0, the newest.
+    PastAlarm(u16),
 }
 
 /// An output signal, or its opposite.
@@ -89,6 +105,15 @@ pub struct Shown {
     pub signal: Output,
     /// Show its opposite.
     pub inverted: bool,
+}
+
+/// A number that the model fixes, or that a row holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Number {
+    /// In the base unit of its dimension.
+    Fixed(f64),
+    /// In the row's unit.
+    Row(RowId),
 }
 
 /// What a bit of a terminal monitor shows.
@@ -129,6 +154,26 @@ impl<S: Copy> Terminals<S> {
     }
 }
 
+/// A setting that takes the signal of a bit away, so that the bit does not act.
+#[derive(Debug)]
+pub struct Claim {
+    /// The row with the bit.
+    pub row: RowId,
+    /// The bit.
+    pub bit: u8,
+    /// The row with the setting.
+    pub by: RowId,
+    /// Which hex digit of it, from the right; `None` is the whole value.
+    pub digit: Option<u8>,
+}
+
+impl Claim {
+    /// Is it made, where the setting's row holds `value`?
+    pub fn is_made(&self, value: i64) -> bool {
+        code_in(value, self.digit) != 0
+    }
+}
+
 /// Input words that a master writes in place of terminals.
 #[derive(Debug)]
 pub struct InputWords {
@@ -142,7 +187,7 @@ pub struct InputWords {
     pub hold: Option<Hold>,
 }
 
-/// How long one write of an input word holds.
+/// How long one write of an input word holds, or how long the master may be silent.
 #[derive(Debug)]
 pub struct Hold {
     /// The row with the time.
@@ -198,6 +243,8 @@ pub enum Reaction {
     Trigger(u16),
     /// How the drive is reached: unit address, speed, format.
     Line,
+    /// How long the master may be silent.
+    Timeout,
 }
 
 /// When the drive is ready and what it does at power-on.
@@ -216,6 +263,8 @@ pub struct Axis {
     pub counts_per_rev: Counts,
     /// How long it runs out without power.
     pub coast: Duration,
+    /// How fast a move makes up for a deviation, 1/s; `None` where it has none.
+    pub position_gain: Option<f64>,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
     /// Motions by number.
@@ -238,6 +287,7 @@ impl Default for Axis {
         Self {
             counts_per_rev: Counts::Fixed(1),
             coast,
+            position_gain: None,
             settings: Vec::new(),
             segments: Segments::default(),
         }
@@ -369,12 +419,30 @@ pub struct Alarm {
     pub code: u16,
     /// Does a reset clear it?
     pub resettable: bool,
+    /// What the axis does.
+    pub stop: AlarmStop,
+}
+
+/// What an axis that moves does when an alarm is raised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AlarmStop {
+    /// It runs out: the power stage goes off.
+    Coast,
+    /// It slows down, then the power stage goes off.
+    Ramp,
+    /// It stands at once, then the power stage goes off.
+    Quick,
 }
 
 impl Wiring {
     /// The alarm for `cause`, if the model has one.
     pub fn alarm(&self, cause: AlarmCause) -> Option<Alarm> {
         self.alarms.iter().find(|alarm| alarm.cause == cause).copied()
+    }
+
+    /// The number that `threshold` stands for.
+    pub fn threshold(&self, threshold: Threshold) -> Option<Number> {
+        self.thresholds.iter().find(|(it, _)| *it == threshold).map(|(_, number)| *number)
     }
 
     /// What `row` shows, or `None` if it holds what was written.

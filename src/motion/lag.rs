@@ -9,7 +9,7 @@ use super::{State, Trajectory, search};
 use crate::time::{Duration, Instant};
 
 /// How far the feedback is behind the trajectory that it belongs to. Goes with each new trajectory by
-/// [`Lag::carried`].
+/// [`Lag::with_deviation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag {
     /// Position gain, 1/s; `None` follows without delay.
@@ -28,10 +28,16 @@ impl Lag {
         Self { gain: (gain > 0.0 && gain.is_finite()).then(|| gain.max(0.01)), deviation: 0.0 }
     }
 
-    /// The lag of the trajectory that replaces `old` at `now`: the deviation does not jump.
+    /// The same, as far behind as it gets to be at `speed`, in counts per second.
+    pub fn at_speed(gain: f64, speed: f64) -> Self {
+        let lag = Self::new(gain);
+        Self { deviation: lag.gain.map_or(0.0, |gain| speed / gain), ..lag }
+    }
+
+    /// The same with a deviation of so many counts at the beginning of the trajectory.
     #[must_use]
-    pub fn carried(self, old: &Trajectory, now: Instant) -> Self {
-        Self { deviation: self.deviation(old, now), ..self }
+    pub fn with_deviation(self, deviation: f64) -> Self {
+        Self { deviation: if self.gain.is_some() { deviation } else { 0.0 }, ..self }
     }
 
     /// With another gain from the beginning of the trajectory on.
@@ -160,7 +166,8 @@ mod tests {
         let running = Trajectory::to_speed(Instant::ZERO, from, 1000.0, 1e4, 1e4);
         let now = Instant::from_millis(10_000);
         let of = Trajectory::halt(now, running.state(now));
-        let lag = Lag::new(50.0).carried(&running, now);
+        let lag = Lag::new(50.0);
+        let lag = lag.with_deviation(lag.deviation(&running, now));
         // 20 counts behind; a tenth is left after ln(10) / 50 s.
         let at = lag.settles_at(&of, 2.0).expect("it settles");
         assert!((at.since(now).as_secs_f64() - 10f64.ln() / 50.0).abs() < 1e-8);
@@ -207,7 +214,7 @@ mod tests {
             let all = instants(&of, 100);
             let now = all[(part * 99.0) as usize];
             let next = Trajectory::halt(now, of.state(now));
-            let carried = lag.carried(&of, now);
+            let carried = lag.with_deviation(lag.deviation(&of, now));
             prop_assert_eq!(carried.deviation(&next, now), lag.deviation(&of, now));
             let window = 0.7;
             let at = carried.settles_at(&next, window).expect("it settles");

@@ -71,6 +71,12 @@ impl Trajectory {
         self.state(at).speed
     }
 
+    /// Counts per second that it goes on with in the end, signed; 0 if it comes to rest.
+    pub fn last_speed(&self) -> f64 {
+        let last = self.segments().last().filter(|_| self.end.is_none());
+        last.map_or(0.0, |segment| segment.start.speed)
+    }
+
     /// When it comes to rest. `None` if it never does, and for a move that can never arrive because
     /// its speed is zero.
     pub fn end(&self) -> Option<Instant> {

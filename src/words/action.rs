@@ -13,6 +13,8 @@ words! {
         Enable "enable" "switch the power stage on",
         Release "release" "switch the power stage off; it stays off until told otherwise",
         AlarmReset "alarm_reset" "clear an alarm whose cause is gone, if a reset can clear it",
+        EncoderReset "encoder_reset" "clear alarm `encoder`, also where no other reset can; any other alarm stays",
+        ClearAlarmHistory "clear_alarm_history" "forget the alarms that `alarm_history` shows",
         ClearPosition "clear_position" "call the present position 0",
         StoreAll "store_all" "keep all values in force over power-off; ignored while the axis moves",
         RestoreFactory "restore_factory" "put every value back as it left the factory; ignored while the axis moves",

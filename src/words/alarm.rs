@@ -14,6 +14,7 @@ words! {
         HomingLimitPos "homing_limit_pos" "the positive limit ended the way of a homing",
         HomingLimitNeg "homing_limit_neg" "the negative limit ended the way of a homing",
         HomingTime "homing_time" "no origin within `home.time_limit`",
+        CommTimeout "comm_timeout" "no master spoke to the drive in time",
         Forced "forced" "input `alarm_force` is active",
     }
 }

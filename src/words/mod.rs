@@ -12,6 +12,7 @@ mod quantity;
 mod refusal;
 mod setting;
 mod signal;
+mod threshold;
 
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
@@ -25,6 +26,7 @@ pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
 pub use setting::Setting;
 pub use signal::{Input, Inputs, Output, Outputs};
+pub use threshold::Threshold;
 
 /// A word with a name in files and a line of explanation: what the catalogue prints.
 pub trait Word: Copy + 'static {

@@ -10,6 +10,7 @@ words! {
         SpeedActual "speed.actual" "how fast the axis goes; negative in the negative direction",
         SegmentRunning "segment.running" "number of the position segment that started last; 0 after power-on",
         SegmentNext "segment.next" "number of the position segment that comes next in the chain under way; without one, of the one selected",
+        ErrorFollowing "error.following" "how far the axis is behind the command of a move, in counts; negative in the negative direction",
         AlarmCode "alarm.code" "the vendor's number of the present alarm, 0 without one",
         UnitInUse "unit.in_use" "the unit address that the drive answers to",
         UnitSwitches "unit.switches" "the address switches as they are set",
@@ -20,7 +21,7 @@ impl Quantity {
     /// What it measures; the row's unit must fit.
     pub fn dimension(self) -> Dimension {
         match self {
-            Self::PositionActual => Dimension::Position,
+            Self::PositionActual | Self::ErrorFollowing => Dimension::Position,
             Self::SpeedActual => Dimension::Speed,
             Self::SegmentRunning
             | Self::SegmentNext

@@ -32,6 +32,7 @@ words! {
         SoftLimitPos "limit.soft_pos" "greatest position, where soft limits are in force",
         SoftLimitNeg "limit.soft_neg" "least position, where soft limits are in force",
         Deviation "limit.deviation" "counts that the axis may be behind before alarm `position_deviation`",
+        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops; read when the alarm is raised",
     }
 }
 
@@ -58,6 +59,7 @@ impl Setting {
             | Self::HomeFast
             | Self::HomeSlow => &[Dimension::Speed],
             Self::HomeTimeLimit => &[Dimension::Time],
+            Self::AlarmDecel => &[Dimension::Acceleration],
             Self::RunAccel
             | Self::RunDecel
             | Self::JogAccel

@@ -41,8 +41,8 @@ words! {
         Alarm "alarm" "an alarm stands",
         BrakeOpen "brake_open" "the holding brake is released; follows `enabled`",
         Moving "moving" "a motion is under way, from its start to the standstill",
-        InPosition "in_position" "the axis stands where its last move was to end; off from the start of any motion",
-        ZeroSpeed "zero_speed" "the speed is 0",
+        InPosition "in_position" "the last move has ended, and the axis is where it was to end; off from the start of any motion",
+        ZeroSpeed "zero_speed" "the speed is 0, or not above `zero.speed`",
         HomeDone "home_done" "the origin was found; off at power-on and from the start of a homing",
         AtLimitPos "limit_pos" "signal `limit_pos` is active",
         AtLimitNeg "limit_neg" "signal `limit_neg` is active",
@@ -53,6 +53,15 @@ words! {
         Segment2 "segment_2" "bit 2 of `segment.running`",
         Segment3 "segment_3" "bit 3 of `segment.running`",
         Segment4 "segment_4" "bit 4 of `segment.running`",
+        Turning "turning" "the speed is above `turning.speed`, in either direction",
+        SpeedReached "speed_reached" "the speed, in either direction, is within `reached.window` of `reached.speed`",
+        SpeedAgrees "speed_agrees" "the axis runs or jogs, less than `agrees.window` from the speed that was ordered",
+        Coincides "coincides" "the axis is within `coincides.window` of its command, in motion too",
+        Near "near" "the axis is within `near.window` of its command, in motion too",
+        Arrived "arrived" "while the axis runs or jogs `speed_agrees`, else `in_position`",
+        User0 "user_0" "bit 0 of the row that `signals.outputs.user` names",
+        User1 "user_1" "bit 1 of the same row",
+        User2 "user_2" "bit 2 of the same row",
     }
 }
 

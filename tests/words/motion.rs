@@ -5,7 +5,7 @@ use drivemu::bench::DeviceSpec;
 use drivemu::model::Row;
 use drivemu::motion::{Machine, Zone};
 use drivemu::testkit::Rig;
-use drivemu::words::{Action, Input, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Word};
 use std::time::Duration;
 
 #[test]
@@ -69,6 +69,9 @@ fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String
         _ => jog(&mut rig, true),
     }
     look(&mut rig, &mut places, 200);
+    if setting == Setting::AlarmDecel {
+        super::raise(&mut rig, AlarmCause::CommTimeout);
+    }
     jog(&mut rig, false);
     super::by_bit(&mut rig, Input::InchPos, false);
     if setting.name().starts_with("run") {

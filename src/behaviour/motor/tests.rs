@@ -63,7 +63,7 @@ fn machines() -> impl Strategy<Value = Machine> {
 
 impl Bench {
     fn new(machine: Machine) -> Self {
-        let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine);
+        let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
         let wants = Wants { power: true, ..Wants::default() };
         let mut bench = Self { motor, wants, now: Instant::ZERO, told: Vec::new() };
         bench.follow();
@@ -170,7 +170,7 @@ proptest! {
         let mut last: Option<(Instant, State)> = None;
         let mut worst = 0.0f64;
         play(machine, &orders, 1, |bench| {
-            let state = bench.motor.state(bench.now);
+            let state = bench.motor.feedback(bench.now);
             if let Some([low, high]) = machine.hard_stop {
                 worst = worst.max(low as f64 - state.position).max(state.position - high as f64);
             }
@@ -192,7 +192,7 @@ proptest! {
         let mut last: Option<(Instant, f64)> = None;
         let mut worst = 0.0f64;
         play(Machine::default(), &orders, 1, |bench| {
-            let speed = bench.motor.speed(bench.now);
+            let speed = bench.motor.feedback(bench.now).speed;
             if let Some((at, was)) = last {
                 // To coast takes 200 ms from whatever speed, which is no steeper than the ramps here.
                 worst = worst.max((speed - was).abs() - 20_000.0 * bench.now.since(at).as_secs_f64());

@@ -1,6 +1,6 @@
 //! How the drive talks.
 
-use super::RawOrder;
+use super::{RawHold, RawOrder};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -41,6 +41,9 @@ pub struct RawLine {
     /// What reading a write-only row gives; default `refused`.
     #[serde(default)]
     pub write_only_reads: RawWriteOnlyReads,
+    /// How long the master may be silent: each request to this unit, refused or not, and each broadcast
+    /// starts the time anew; at its end alarm `comm_timeout` is raised. Default: for ever.
+    pub timeout: Option<RawHold>,
     /// Causes of refusal with the exception code that each answers with, tried top to bottom: of all
     /// the causes that hold, the first in this list answers.
     pub refuse: Vec<BTreeMap<String, u8>>,

@@ -53,7 +53,8 @@ pub struct RawModel {
     /// One-word rows for every address of a span that no other row takes, by name of the area.
     #[serde(default)]
     pub fill: BTreeMap<String, RawFill>,
-    /// Numbers that the drive computes or goes by, each with the row that holds it, by role.
+    /// Numbers that the drive computes or goes by, each with the row that holds it, by role. What an
+    /// output goes by may be a number with its unit too (`20 rpm`).
     #[serde(default)]
     pub quantities: BTreeMap<String, String>,
     /// Where signals come from and where they show.
@@ -71,6 +72,9 @@ pub struct RawModel {
     /// Alarms that the drive can raise, by cause.
     #[serde(default)]
     pub alarms: BTreeMap<String, RawAlarm>,
+    /// Rows that show the numbers of the alarms that were raised, newest first.
+    #[serde(default)]
+    pub alarm_history: Vec<String>,
 }
 
 /// Who makes the drive and what it is called.
@@ -161,12 +165,14 @@ pub fn schema() -> serde_json::Value {
 pub const KEYS: &[&str] = &[
     "about",
     "access",
+    "alarm_history",
     "alarms",
     "all",
     "applies",
     "assumed",
     "at",
     "at_limit",
+    "autosave",
     "axis",
     "base",
     "baud",
@@ -174,6 +180,7 @@ pub const KEYS: &[&str] = &[
     "by",
     "chain",
     "choices",
+    "claims",
     "clears",
     "coast",
     "code",
@@ -226,6 +233,7 @@ pub const KEYS: &[&str] = &[
     "options",
     "outputs",
     "position",
+    "position_gain",
     "positions",
     "prefix",
     "products",
@@ -258,6 +266,7 @@ pub const KEYS: &[&str] = &[
     "then",
     "through",
     "time_factor",
+    "timeout",
     "title",
     "to",
     "trigger",
@@ -265,6 +274,7 @@ pub const KEYS: &[&str] = &[
     "type",
     "unit",
     "units",
+    "user",
     "value",
     "values",
     "velocity",

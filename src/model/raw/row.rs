@@ -33,6 +33,9 @@ pub struct RawRow {
     /// Never kept over power-off, whatever the window or a save command says.
     #[serde(default)]
     pub volatile: bool,
+    /// Each write is kept over power-off, without a window or a command that saves.
+    #[serde(default)]
+    pub autosave: bool,
     /// The drive sets it back to 0 by itself once it has acted on a write; never kept over power-off either.
     #[serde(default)]
     pub clears: bool,

@@ -33,10 +33,22 @@ pub struct RawInputs {
     pub words: Option<RawInputWords>,
     /// Rows whose bits are signals: row -> bit -> signal.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// Settings that take the signals of such bits away: row -> bit -> setting.
+    pub claims: BTreeMap<String, BTreeMap<u8, RawClaim>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
     pub commands: BTreeMap<String, BTreeMap<i64, String>>,
     /// Rows in which writing a 1 to a bit triggers an action. Every write triggers.
     pub triggers: BTreeMap<String, RawTriggers>,
+}
+
+/// A setting that takes the signal of a bit away. While it is not 0, the bit does not act.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawClaim {
+    /// The row with the setting.
+    pub register: String,
+    /// Which hex digit of it, counted from the right, from 0; default: the whole value.
+    pub digit: Option<u8>,
 }
 
 /// A row whose bits trigger actions.
@@ -63,6 +75,8 @@ pub struct RawOutputs {
     pub words: Option<RawOutputWords>,
     /// Rows whose bits show signals: row -> bit -> signal, or `not` and a signal.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// The row whose bits 0, 1 and 2 are the signals `user_0`, `user_1` and `user_2`.
+    pub user: Option<String>,
 }
 
 /// Physical terminals with assignable functions.
@@ -120,7 +134,7 @@ pub struct RawInputWords {
     pub hold: Option<RawHold>,
 }
 
-/// How long one write of an input word holds.
+/// A row with the time in which a master must do something again.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawHold {
@@ -169,6 +183,9 @@ pub struct RawAxis {
     /// Motions by number, which signals select and start.
     #[serde(default)]
     pub segments: RawSegments,
+    /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
+    /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
+    pub position_gain: Option<f64>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }
@@ -193,8 +210,25 @@ pub struct RawAlarm {
     /// Does a reset clear it? Otherwise only a power cycle does. Default yes.
     #[serde(default = "yes")]
     pub resettable: bool,
+    /// What an axis that moves does when the alarm is raised; default `coast`.
+    #[serde(default)]
+    pub stop: RawAlarmStop,
     /// What was assumed, and why.
     pub assumed: Option<String>,
+}
+
+/// What an axis that moves does when an alarm is raised.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawAlarmStop {
+    /// Its power stage goes off and it runs out.
+    #[default]
+    Coast,
+    /// It slows down with `alarm.decel`; then its power stage goes off.
+    Ramp,
+    /// It stands at once; then its power stage goes off.
+    Quick,
 }
 
 fn yes() -> bool {

@@ -114,6 +114,11 @@ impl Wirer<'_> {
         if let Some(coast) = self.duration(raw.coast.as_deref(), &path.key("coast")) {
             self.wiring.axis.coast = coast;
         }
+        if raw.position_gain.is_some_and(|gain| !(0.1..=10_000.0).contains(&gain)) {
+            let what = "a position gain lies between 0.1 and 10000 1/s";
+            self.problems.push(Problem::value(path.key("position_gain"), what));
+        }
+        self.wiring.axis.position_gain = raw.position_gain;
     }
 
     fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
@@ -172,8 +177,18 @@ impl Wirer<'_> {
         let ends = ends.into_iter().filter(|it| inputs.contains(it));
         let orders = [Action::Stop, Action::QuickStop].into_iter();
         let orders = orders.filter(|it| actions.contains(it)).map(Word::name);
-        let outputs = [Output::Moving, Output::InPosition, Output::ZeroSpeed].into_iter();
-        let shown = outputs.filter(|it| self.is_shown(*it)).map(Word::name);
+        let outputs = [
+            Output::Moving,
+            Output::InPosition,
+            Output::ZeroSpeed,
+            Output::Turning,
+            Output::SpeedReached,
+            Output::SpeedAgrees,
+            Output::Arrived,
+            Output::Coincides,
+            Output::Near,
+        ];
+        let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
         names.into_iter().for_each(|name| self.without_motion(name, &path));
         let path = Path::root().key("quantities");
@@ -190,7 +205,7 @@ impl Wirer<'_> {
         }
     }
 
-    fn without_motion(&mut self, name: &str, path: &Path) {
+    pub(super) fn without_motion(&mut self, name: &str, path: &Path) {
         let what = format!("`{name}` changes nothing: nothing starts a motion");
         let advice = "wire what starts it, or leave it out";
         self.problems.push(Problem::key(path.clone(), what).advise(advice));

@@ -1,17 +1,18 @@
 //! Resolves the wiring of a file: names to rows, words to roles.
 
 use super::{
-    Alarm, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals, Wiring,
+    Alarm, AlarmStop, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals,
+    Wiring,
 };
 use crate::model::raw::{
-    RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
+    RawAlarmStop, RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
 };
 use crate::model::rows::Compiled;
 use crate::problem::{At, Path, Problem};
 use crate::time::Duration;
 use crate::units::Dimension;
 use crate::words::RowId;
-use crate::words::{AlarmCause, Input, Word};
+use crate::words::{AlarmCause, Input};
 
 pub(in crate::model) fn compile(
     raw: &RawModel,
@@ -29,12 +30,16 @@ pub(in crate::model) fn compile(
     let signals = Path::root().key("signals");
     wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
+    wirer.thresholds_fit();
     wirer.line(&raw.line);
     wirer.servo(raw);
     wirer.alarms(raw);
     raw.homing.iter().for_each(|homing| wirer.homing(homing));
     wirer.limits(raw.limits.as_ref());
     wirer.axis(raw.axis.as_ref());
+    wirer.deviation_fits();
+    wirer.alarm_history(&raw.alarm_history);
+    wirer.alarms_fit(raw);
     wirer.wiring
 }
 
@@ -58,6 +63,14 @@ impl Wirer<'_> {
             if let Some((row, _)) = self.rows.map.rows().find(|(_, row)| row.id == *register) {
                 self.react(row, Reaction::Line, &path.key(key).key("register"), At::Value);
             }
+        }
+        if let Some(raw) = &raw.timeout {
+            let path = path.key("timeout");
+            let timeout = self.hold(raw, &path);
+            if let Some(timeout) = &timeout {
+                self.react(timeout.row, Reaction::Timeout, &path.key("register"), At::Value);
+            }
+            self.wiring.timeout = timeout;
         }
     }
 
@@ -114,6 +127,7 @@ impl Wirer<'_> {
             self.react(row, Reaction::Inputs, &path, At::Key);
             self.wiring.input_bits.push((row, map));
         }
+        self.claims(raw, &path.key("claims"));
         self.commands(&raw.commands, &path.key("commands"));
         self.triggers(&raw.triggers, &path.key("triggers"));
     }
@@ -150,6 +164,7 @@ impl Wirer<'_> {
             }
             self.show(row, Shows::Bits(map), &path, At::Key);
         }
+        self.user_outputs(raw.user.as_deref(), path);
     }
 
     /// Words of signals with their enable words: the rows of both.
@@ -226,21 +241,16 @@ impl Wirer<'_> {
                 self.problems.push(Problem::value(path.key("code"), what));
             }
             let cause = self.word_key::<AlarmCause>(name, "alarm cause", &path);
-            let (code, resettable) = (alarm.code, alarm.resettable);
-            self.wiring.alarms.extend(cause.map(|cause| Alarm { cause, code, resettable }));
+            let (code, resettable, stop) = (alarm.code, alarm.resettable, stop(alarm.stop));
+            self.wiring.alarms.extend(cause.map(|cause| Alarm { cause, code, resettable, stop }));
         }
-        let forced = raw.signals.inputs.codes.values().any(|name| name == Input::AlarmForce.name())
-            || raw
-                .signals
-                .inputs
-                .bits
-                .values()
-                .any(|bits| bits.values().any(|name| name == Input::AlarmForce.name()));
-        if forced && self.wiring.alarm(AlarmCause::Forced).is_none() {
-            let what = "input signal `alarm_force` is wired, but alarm `forced` has no number";
-            let path = Path::root().key(if raw.alarms.is_empty() { "signals" } else { "alarms" });
-            self.problems
-                .push(Problem::key(path, what).advise("add `forced: {code: N}` to `alarms`"));
-        }
+    }
+}
+
+fn stop(raw: RawAlarmStop) -> AlarmStop {
+    match raw {
+        RawAlarmStop::Coast => AlarmStop::Coast,
+        RawAlarmStop::Ramp => AlarmStop::Ramp,
+        RawAlarmStop::Quick => AlarmStop::Quick,
     }
 }

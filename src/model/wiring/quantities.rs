@@ -1,11 +1,11 @@
-//! Numbers by role: rows that show what the drive computes, and rows that its motions go by.
+//! Numbers by role: rows that show what the drive computes, and what its motions and outputs go by.
 
 use super::Shows;
 use super::compile::Wirer;
 use crate::model::RowId;
 use crate::problem::{At, Path, Problem, suggest};
 use crate::units::{Dimension, Unit};
-use crate::words::{Quantity, Setting, Word};
+use crate::words::{Quantity, Setting, Threshold, Word};
 use std::collections::BTreeMap;
 
 impl Wirer<'_> {
@@ -13,6 +13,10 @@ impl Wirer<'_> {
         let path = Path::root().key("quantities");
         for (name, register) in raw {
             let path = path.key(name);
+            if let Some(threshold) = Threshold::parse(name) {
+                self.threshold(threshold, register, &path);
+                continue;
+            }
             let (quantity, setting) = (Quantity::parse(name), Setting::parse(name));
             if quantity.is_none() && setting.is_none() {
                 self.no_quantity(name, &path);
@@ -33,7 +37,8 @@ impl Wirer<'_> {
     fn no_quantity(&mut self, name: &str, path: &Path) {
         let names = || {
             let quantities = Quantity::ALL.iter().map(|it| it.name());
-            quantities.chain(Setting::ALL.iter().map(|it| it.name()))
+            let settings = Setting::ALL.iter().map(|it| it.name());
+            quantities.chain(settings).chain(Threshold::ALL.iter().map(|it| it.name()))
         };
         let advice = suggest::did_you_mean(name, names())
             .unwrap_or_else(|| format!("known: {}", names().collect::<Vec<_>>().join(", ")));

@@ -1,7 +1,6 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
-use super::Counts;
-use super::{Homing, Reaction, Wiring};
+use super::{Counts, Homing, Number, Reaction, Wiring};
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
 use crate::model::{Applies, RowId};
@@ -60,6 +59,12 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
     wiring.axis.segments.rows().for_each(&mut mark);
+    wiring.user_outputs.iter().copied().for_each(&mut mark);
+    for (_, number) in &wiring.thresholds {
+        if let Number::Row(row) = number {
+            mark(*row);
+        }
+    }
     for (i, shows) in wiring.shows.iter().enumerate() {
         if shows.is_some() || wiring.reactions[i] != Reaction::None {
             mark(RowId(i as u16));

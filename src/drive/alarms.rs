@@ -1,0 +1,57 @@
+//! Alarms of a drive: how the axis stops when one is raised, which ones were raised before, and a cause of its
+//! own, the master's silence.
+
+use super::Drive;
+use crate::behaviour::Trip;
+use crate::event::Change;
+use crate::model::AlarmStop;
+use crate::words::AlarmCause;
+
+impl Drive {
+    /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.
+    pub(super) fn trip(&mut self, cause: AlarmCause) -> bool {
+        let Some(alarm) = self.model.wiring.alarm(cause) else { return false };
+        let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
+        let (is_first, was_braking) = (self.servo.alarm().is_none(), self.servo.is_braking());
+        let brakes = alarm.stop != AlarmStop::Coast && self.motor.is_moving();
+        self.servo.trip(trip, brakes, &mut |change| self.changes.push_back(change));
+        if is_first {
+            self.remember(alarm.code);
+        }
+        if self.servo.is_braking() && !was_braking {
+            self.brake(alarm.stop);
+        }
+        true
+    }
+
+    /// Puts an alarm before those that were raised earlier. The oldest is lost where there is no room.
+    fn remember(&mut self, code: u16) {
+        let model = self.model.clone();
+        let mut newer = u32::from(code);
+        for row in &model.wiring.alarm_history {
+            let older = self.bank.raw(*row);
+            self.bank.preset(&model, *row, newer);
+            newer = older;
+        }
+    }
+
+    /// Forgets the alarms that were raised earlier.
+    pub(super) fn forget_alarms(&mut self) {
+        let model = self.model.clone();
+        model.wiring.alarm_history.iter().for_each(|row| self.bank.preset(&model, *row, 0));
+        self.changes.push_back(Change::AlarmHistoryCleared);
+    }
+
+    /// A master spoke to this drive: from now on it has the time in the row to speak again.
+    pub(super) fn hear(&mut self) {
+        let time = self.model.wiring.timeout.as_ref().and_then(|hold| self.time_in(hold));
+        self.silence.refresh(self.now, time);
+    }
+
+    /// Trips when no master has spoken in time. The next one who does starts the time anew.
+    pub(super) fn end_silence(&mut self) {
+        if self.silence.expired(self.now).is_some() {
+            self.trip(AlarmCause::CommTimeout);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! What goes with alarms: the rows that remember them, and whether what raises, clears or follows one has an
+//! alarm to do it with.
+
+use super::compile::Wirer;
+use super::{AlarmStop, Shows};
+use crate::model::raw::{RawAlarmStop, RawModel};
+use crate::problem::{At, Path, Problem};
+use crate::words::{Action, AlarmCause, Input, Setting, Word};
+
+impl Wirer<'_> {
+    pub(super) fn alarm_history(&mut self, registers: &[String]) {
+        let path = Path::root().key("alarm_history");
+        let rows = self.row_list(registers, &path);
+        for (i, row) in rows.iter().enumerate() {
+            self.show(*row, Shows::PastAlarm(i as u16), &path.index(i), At::Value);
+        }
+        self.wiring.alarm_history = rows;
+    }
+
+    /// To be called when all the wiring is there.
+    pub(super) fn alarms_fit(&mut self, raw: &RawModel) {
+        let (inputs, actions) = (self.inputs_wired(), self.actions_wired());
+        let signals = Path::root().key("signals");
+        if inputs.contains(&Input::AlarmForce) {
+            self.wired_alarm("alarm_force", AlarmCause::Forced, &signals);
+        }
+        if actions.contains(&Action::EncoderReset) {
+            self.wired_alarm(Action::EncoderReset.name(), AlarmCause::Encoder, &signals);
+        }
+        if raw.line.timeout.is_some() {
+            let path = Path::root().key("line").key("timeout");
+            self.wired_alarm("timeout", AlarmCause::CommTimeout, &path);
+        }
+        self.history_fits(raw, actions.contains(&Action::ClearAlarmHistory));
+        self.stops_fit(raw);
+    }
+
+    fn wired_alarm(&mut self, by: &str, cause: AlarmCause, path: &Path) {
+        if self.wiring.alarm(cause).is_some() {
+            return;
+        }
+        let name = cause.name();
+        let what = format!("`{by}` is wired, but alarm `{name}` has no number");
+        let advice = format!("add `{name}: {{code: N}}` to `alarms`");
+        self.problems.push(Problem::key(path.clone(), what).advise(advice));
+    }
+
+    fn history_fits(&mut self, raw: &RawModel, cleared: bool) {
+        let clear = Action::ClearAlarmHistory.name();
+        if cleared && raw.alarm_history.is_empty() {
+            let what = format!("`{clear}` is wired, but no row shows an alarm of the past");
+            let problem = Problem::key(Path::root().key("signals"), what);
+            self.problems.push(problem.advise("add `alarm_history: [ROW, ...]`"));
+        }
+        if !raw.alarm_history.is_empty() && raw.alarms.is_empty() {
+            let what = "`alarm_history` stays empty: there are no `alarms`";
+            let problem = Problem::key(Path::root().key("alarm_history"), what);
+            self.problems.push(problem.advise("add them, or leave it out"));
+        }
+    }
+
+    fn stops_fit(&mut self, raw: &RawModel) {
+        for (name, alarm) in &raw.alarms {
+            if raw.axis.is_none() && alarm.stop != RawAlarmStop::Coast {
+                self.without_motion("stop", &Path::root().key("alarms").key(name).key("stop"));
+            }
+        }
+        let ramp = self.wiring.alarms.iter().find(|alarm| alarm.stop == AlarmStop::Ramp);
+        let decel = Setting::AlarmDecel.name();
+        match (ramp, self.wiring.axis.setting(Setting::AlarmDecel)) {
+            (None, Some(_)) => {
+                let what = format!("`{decel}` changes nothing: no alarm stops with a ramp");
+                let path = Path::root().key("quantities").key(decel);
+                self.problems.push(Problem::key(path, what).advise("give one `stop: ramp`"));
+            }
+            (Some(alarm), None) => {
+                let what = format!("no row holds `{decel}`, with which it would slow down");
+                let path = Path::root().key("alarms").key(alarm.cause.name()).key("stop");
+                let advice = format!("add `{decel}: ROW` to `quantities`");
+                self.problems.push(Problem::value(path, what).advise(advice));
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Outputs that a master sets itself.
+
+use super::compile::Wirer;
+use crate::problem::{At, Path, Problem};
+use crate::words::{Output, Word};
+
+impl Wirer<'_> {
+    /// To be called when all that shows outputs is wired.
+    pub(super) fn user_outputs(&mut self, register: Option<&str>, path: &Path) {
+        let signals = [Output::User0, Output::User1, Output::User2];
+        let shown = signals.into_iter().find(|it| self.is_shown(*it)).map(Word::name);
+        let at = path.key("user");
+        match (register, shown) {
+            (Some(_), None) => {
+                let what = "`user` changes nothing: neither `user_0` nor its kin shows anywhere";
+                self.problems.push(Problem::key(at.clone(), what).advise("show one"));
+            }
+            (None, Some(name)) => {
+                let what = format!("`{name}` shows, but no row says what");
+                let problem = Problem::key(path.clone(), what);
+                self.problems.push(problem.advise("add `user: ROW` to `outputs`"));
+            }
+            _ => {}
+        }
+        let Some(row) = register.and_then(|register| self.row(register, &at)) else { return };
+        self.writable(row, &at, At::Value);
+        self.wiring.user_outputs = Some(row);
+    }
+}

@@ -1,0 +1,34 @@
+//! Numbers that outputs go by: a model says which row holds them, or fixes them.
+
+use super::words;
+use crate::units::Dimension;
+
+words! {
+    /// A number that an output is held against, whenever somebody looks at it.
+    Threshold {
+        ZeroSpeed "zero.speed" "`zero_speed` shows up to this speed; 0 if left out",
+        TurningSpeed "turning.speed" "`turning` shows above this speed",
+        ReachedSpeed "reached.speed" "the speed that `speed_reached` is about",
+        ReachedWindow "reached.window" "how far from `reached.speed` it still shows",
+        PositionWindow "position.window" "how far from its end a move may be for `in_position`; 0 if left out",
+        PositionSettle "position.settle" "how long it must have been so near; 0 if left out",
+        CoincidesWindow "coincides.window" "how far the axis may be behind its command for `coincides`",
+        NearWindow "near.window" "how far the axis may be behind its command for `near`",
+        AgreesWindow "agrees.window" "how near `speed_agrees` takes a speed for the one that was ordered",
+    }
+}
+
+impl Threshold {
+    /// What it measures; the row's unit must fit.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Self::ZeroSpeed
+            | Self::TurningSpeed
+            | Self::ReachedSpeed
+            | Self::ReachedWindow
+            | Self::AgreesWindow => Dimension::Speed,
+            Self::PositionWindow | Self::CoincidesWindow | Self::NearWindow => Dimension::Position,
+            Self::PositionSettle => Dimension::Time,
+        }
+    }
+}

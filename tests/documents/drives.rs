@@ -1,0 +1,127 @@
+//! Tables in docs/drives that are made from the models: alarms and outputs.
+
+use crate::expect::{read, root, same};
+use crate::kit::{MODELS, text_of};
+use drivemu::model::builtin::Builtin;
+use drivemu::model::{AlarmStop, Choices, Model, Row, Shown, Shows};
+use drivemu::words::{Action, AlarmCause, Input, Output, Threshold, Word};
+use serde_yaml::Value;
+use std::fmt::Write as _;
+
+const BEGIN: &str =
+    "<!-- Generated from the model by `UPDATE_DOCS=1 cargo test`, down to the next mark. -->\n";
+const END: &str = "<!-- Written by hand again. -->\n";
+
+#[test]
+fn the_tables_of_each_drive_are_up_to_date() {
+    let mut bad = Vec::new();
+    for name in MODELS {
+        let path = root(&format!("docs/drives/{name}.md"));
+        let page = read(&path);
+        let model = Builtin::find(name).expect("embedded").load(&Choices::new()).expect("valid");
+        let file: Value = serde_yaml::from_str(text_of(name)).expect("YAML");
+        let (before, rest) = page.split_once(BEGIN).expect("a mark where the tables begin");
+        let (_, after) = rest.split_once(END).expect("a mark where they end");
+        let tables = alarms(&model, &file["alarms"]) + &outputs(&model, &file["quantities"]);
+        let page = format!("{before}{BEGIN}{tables}\n{END}{after}");
+        bad.extend(same(&path, &page, "UPDATE_DOCS").err());
+    }
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
+
+fn alarms(model: &Model, file: &Value) -> String {
+    let mut out = String::from(
+        "\n## Alarms\n\n| cause | number | raised when | the axis | cleared by | assumed |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    let mut alarms = model.wiring.alarms.clone();
+    alarms.sort_by_key(|alarm| alarm.code);
+    for alarm in alarms {
+        let (name, about) = (alarm.cause.name(), alarm.cause.about());
+        let stop = match alarm.stop {
+            AlarmStop::Coast => "runs out",
+            AlarmStop::Ramp => "slows down",
+            AlarmStop::Quick => "stands at once",
+        };
+        let assumed = file[name]["assumed"].as_str().unwrap_or_default();
+        let code = alarm.code;
+        let cleared = cleared_by(model, alarm.cause, alarm.resettable);
+        writeln!(out, "| `{name}` | {code} | {about} | {stop} | {cleared} | {assumed} |")
+            .expect("a string");
+    }
+    out
+}
+
+/// What a master, or whoever has the terminals, can do about an alarm.
+fn cleared_by(model: &Model, cause: AlarmCause, resettable: bool) -> String {
+    let wiring = &model.wiring;
+    let clears = |action: Action| match action {
+        Action::AlarmReset => resettable,
+        Action::EncoderReset => cause == AlarmCause::Encoder,
+        _ => false,
+    };
+    let mut ways = Vec::new();
+    for commands in &wiring.commands {
+        let code = code(model.map.row(commands.row));
+        let values = commands.actions.iter().filter(|(_, action)| clears(*action));
+        ways.extend(values.map(|(value, _)| format!("{code} := 0x{value:04X}")));
+    }
+    let codes = wiring.input_terminals.iter().flat_map(|it| &it.codes);
+    let codes = codes.filter(|(_, input)| *input == Input::AlarmReset && resettable);
+    ways.extend(codes.map(|(code, _)| format!("input function {code}")));
+    for (row, bits) in &wiring.input_bits {
+        let code = code(model.map.row(*row));
+        let bits = bits.iter().filter(|(_, input)| *input == Input::AlarmReset && resettable);
+        ways.extend(bits.map(|(bit, _)| format!("{code} bit {bit}")));
+    }
+    ways.push("a power cycle".into());
+    ways.join(", ")
+}
+
+fn outputs(model: &Model, numbers: &Value) -> String {
+    let mut out = String::from("\n## Outputs\n\n| signal | where | active when |\n|---|---|---|\n");
+    for output in Output::ALL {
+        let places = places(model, *output);
+        if !places.is_empty() {
+            let (name, about) = (output.name(), output.about());
+            writeln!(out, "| `{name}` | {} | {about} |", places.join(", ")).expect("a string");
+        }
+    }
+    let thresholds = Threshold::ALL.iter().map(|it| it.name());
+    let mut line = String::new();
+    for name in thresholds {
+        if let Some(number) = numbers[name].as_str() {
+            let comma = if line.is_empty() { "" } else { ", " };
+            write!(line, "{comma}`{name}` {number}").expect("a string");
+        }
+    }
+    if !line.is_empty() {
+        writeln!(out, "\nThey go by {line}.").expect("a string");
+    }
+    out
+}
+
+/// Where an output shows: functions of terminals and words, bits of rows.
+fn places(model: &Model, output: Output) -> Vec<String> {
+    let wiring = &model.wiring;
+    let is = |shown: &Shown| shown.signal == output;
+    let turned = |shown: &Shown| if shown.inverted { ", turned round" } else { "" };
+    let codes = wiring.output_terminals.iter().flat_map(|it| &it.codes).filter(|it| is(&it.1));
+    let mut places: Vec<_> =
+        codes.map(|(code, it)| format!("output function {code}{}", turned(it))).collect();
+    for (id, row) in model.map.rows() {
+        if let Some(Shows::Bits(bits)) = wiring.shows(id) {
+            let bits = bits.iter().filter(|it| is(&it.1));
+            places.extend(bits.map(|(bit, it)| format!("{} bit {bit}{}", code(row), turned(it))));
+        }
+    }
+    places
+}
+
+/// The manual's code of a row, or its address where our own word stands for it.
+fn code(row: &Row) -> String {
+    match row.id.starts_with(char::is_lowercase) {
+        true => format!("0x{:04X}", row.at),
+        false => row.id.clone(),
+    }
+}
