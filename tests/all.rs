@@ -4,6 +4,7 @@ mod allocation;
 mod documents;
 mod expect;
 mod frames;
+mod homing;
 mod kit;
 mod ladder;
 mod line;

@@ -106,14 +106,15 @@ impl Machine {
     }
 
     /// The next index mark passed after `after`, in either way. Downwards a mark is passed when the
-    /// axis leaves it.
+    /// axis leaves it. None is passed beyond a hard stop.
     pub fn next_index(&self, of: &Trajectory, after: Instant) -> Option<IndexPulse> {
         let Index { every, offset } = self.index.filter(|it| it.every > 0)?;
         // The first mark to be passed is one of the two neighbours.
         let low = below(of.position(after), every, offset)?;
         let high = low.checked_add(every)?;
+        let within = |mark| self.hard_stop.is_none_or(|[low, high]| low < mark && mark <= high);
         let pulse = |mark: i64, way| {
-            let at = of.crossing(mark as f64, way, after)?;
+            let at = of.crossing(mark as f64, way, after).filter(|_| within(mark))?;
             Some(IndexPulse { at, mark, way })
         };
         let pulses = [pulse(low, Way::Falling), pulse(high, Way::Rising)];
