@@ -18,7 +18,7 @@
 //! + 200ms                              # time passes
 //! ? alarm off  C003 30                 # signals, quantities and registers of the drive
 //! ! power_cycle                        # also `terminal I1 on`, `raise overload`
-//! log refused, range 0..50             # the log since the last such line says so
+//! log refused, range 0..50             # the log says so, later than what the last such line found
 //! ```
 //!
 //! What stands behind `#` is a comment.
