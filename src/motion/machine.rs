@@ -224,9 +224,10 @@ mod tests {
 
     #[test]
     fn passes_each_index_mark_once() {
+        let free = Machine { hard_stop: None, ..MACHINE };
         let marks = |of: Trajectory| {
-            let first = MACHINE.next_index(&of, Instant::ZERO);
-            let pulses = std::iter::successors(first, |it| MACHINE.next_index(&of, it.at));
+            let first = free.next_index(&of, Instant::ZERO);
+            let pulses = std::iter::successors(first, |it| free.next_index(&of, it.at));
             pulses.map(|it| (it.mark, it.way)).collect::<Vec<_>>()
         };
         let up = [-600, 100, 800, 1500].map(|it| (it, Way::Rising));
@@ -240,6 +241,14 @@ mod tests {
         };
         assert_eq!(marks(over(80.0)), [(100, Way::Rising), (100, Way::Falling)]);
         assert_eq!(marks(over(49.0)), []);
+    }
+
+    #[test]
+    fn passes_no_index_mark_beyond_a_hard_stop() {
+        let mark = |from, to| MACHINE.next_index(&run(from, to), Instant::ZERO).map(|it| it.mark);
+        assert_eq!(mark(50, 1500), Some(100));
+        assert_eq!(mark(850, 1600), None);
+        assert_eq!(mark(50, -1500), None);
     }
 
     #[test]

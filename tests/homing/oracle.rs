@@ -17,8 +17,8 @@ pub enum End {
     Late,
     /// Alarm of the position deviation.
     Deviates,
-    /// On an index mark near a limit, or nowhere.
-    NextTo { limit: i64, within: i64 },
+    /// On an index mark near a limit; if not `sure`, perhaps nowhere, and late.
+    NextTo { limit: i64, within: i64, sure: bool },
 }
 
 /// What a method looks for.
@@ -133,7 +133,9 @@ pub fn hcfa(how: Hcfa, scene: &Scene) -> End {
                 None if rule >= 3 => End::LimitAlarm,
                 None => {
                     let limit = if search { high.max(scene.start) } else { low.min(scene.start) };
-                    End::NextTo { limit, within: scene.every() + scene.slow_way(10_000) + 2 }
+                    let within = scene.every() + scene.slow_way(10_000) + 2;
+                    let sure = scene.mark_at_or_below(high - 1).is_some_and(|it| it > lowest);
+                    End::NextTo { limit, within, sure }
                 }
             };
         }

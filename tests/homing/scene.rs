@@ -63,10 +63,6 @@ impl Scene {
         self.index().every
     }
 
-    pub fn travel(&self) -> i64 {
-        self.stops[1] - self.stops[0]
-    }
-
     /// Counts to slow down in from the slow speed, and one.
     pub fn slow_way(&self, counts_per_rev: i64) -> i64 {
         self.slow * self.slow * counts_per_rev * self.ramp_ms / (2 * self.fast * 60_000) + 1
