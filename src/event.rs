@@ -1,12 +1,12 @@
 //! What happened: the values that the log, the tests and later tools are made from. No text here.
 
 use crate::serial::Mode;
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{Action, AlarmCause, HomeEnd, Refusal, RowId, Step};
+use crate::words::{Action, AlarmCause, Condition, HomeEnd, Input, Refusal, RowId, Step};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,6 +142,15 @@ pub enum Change {
     PositionCleared,
     /// All values were stored.
     Stored,
+    /// A master wears the memory out.
+    Wear {
+        /// The row that it stores; `None` for all at once.
+        row: Option<RowId>,
+        /// How often it was stored.
+        writes: u32,
+        /// In this time; `None` for ever.
+        within: Option<Duration>,
+    },
     /// All values are as they left the factory.
     FactoryRestored,
     /// It answers to another unit address now.
@@ -172,6 +181,29 @@ pub enum Change {
     Jogs {
         /// In thousandths of a revolution a minute; the sign is the direction.
         mrpm: i64,
+    },
+    /// A position segment begins.
+    PositionSegment {
+        /// Its number.
+        number: u16,
+        /// Where to, in counts of the drive.
+        to: i64,
+    },
+    /// A velocity segment begins.
+    VelocitySegment {
+        /// Its number.
+        number: u16,
+        /// In thousandths of a revolution a minute; the sign is the direction.
+        mrpm: i64,
+    },
+    /// A chain goes on.
+    ChainStep {
+        /// Number of the segment so far.
+        from: u16,
+        /// Number of the next one.
+        to: u16,
+        /// The condition that was met last of those that count; `None` where there is none.
+        why: Option<Condition>,
     },
     /// It slows down to a standstill.
     Stops,
@@ -265,6 +297,13 @@ pub enum Change {
         /// Why.
         why: Ignored,
     },
+    /// An input signal rose and does nothing.
+    InputIgnored {
+        /// The signal.
+        input: Input,
+        /// Why.
+        why: Ignored,
+    },
     /// An input terminal got another level.
     Terminal {
         /// Index from 0.
@@ -291,4 +330,6 @@ pub enum Ignored {
     Starter,
     /// A parameter holds a value that stands for nothing.
     NoMeaning,
+    /// Nothing has the number that is selected.
+    NoSegment,
 }

@@ -15,6 +15,7 @@ mod schema;
 #[cfg(feature = "cli")]
 mod shell;
 mod source;
+mod state;
 mod tidy;
 mod transcripts;
 mod words;

@@ -38,6 +38,25 @@ fn a_transaction_in_the_steady_state_allocates_nothing() {
     }
 }
 
+/// What a drive stores costs the row's place in the account of the minute, once.
+#[test]
+fn what_is_stored_allocates_nothing_where_nobody_keeps_it() {
+    let rig = crate::kit::rig("k-series", &[], &DeviceSpec::default());
+    let mut bus = rig.fresh_bus();
+    let link = bus.open(rig.wire().framing(1.0));
+    bus.advance_to(Instant::from_millis(2000));
+    let write = rtu::encode(1, &[6, 0x01, 0x30, 0, 5]);
+    let rounds = |bus: &mut Bus| {
+        for _ in 0..200 {
+            while bus.poll_output().is_some() {}
+            bus.receive(bus.now(), link, &write);
+        }
+    };
+    rounds(&mut bus);
+    let counted = allocation_counter::measure(|| rounds(&mut bus));
+    assert_eq!(counted.count_total, 0);
+}
+
 fn transact(bus: &mut Bus, link: LinkId, now: Instant, frame: &[u8]) {
     bus.receive(now, link, frame);
     let mut outputs = 0;

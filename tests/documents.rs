@@ -8,7 +8,9 @@ use drivemu::model;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
-use drivemu::words::{Action, AlarmCause, Cause, Input, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{
+    Action, AlarmCause, Cause, Condition, Input, Modifier, Output, Quantity, Setting, Word,
+};
 use serde_yaml::Value;
 use std::fmt::Write as _;
 
@@ -46,12 +48,15 @@ fn roles() -> String {
     let settings = "Numbers that motions go by: `quantities` says which row holds each. They are read when \
                     a motion starts.";
     section::<Setting>(&mut out, "Settings", settings);
-    out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move from its start speed, to the speed:\n\n");
+    out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move or run from its start speed, to the speed:\n\n");
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");
+    let conditions = "What a segment waits for before the next one of its chain: `axis.segments.position.chain` \
+                      gives each its code.";
+    section::<Condition>(&mut out, "Conditions", conditions);
     let alarms =
         "Why a drive trips: `alarms` gives each its number. What has no number is never raised.";
     section::<AlarmCause>(&mut out, "Alarm causes", alarms);

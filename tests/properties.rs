@@ -171,6 +171,23 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(modest(48))]
+
+    /// Whatever masters have stored, the next run takes it and keeps the same.
+    #[test]
+    fn a_state_is_read_back(model in prop::sample::select(&MODELS[..]), requests in prop::collection::vec(pdu(), 1..40)) {
+        let spec = DeviceSpec::default();
+        let mut first = rig(model, &[], &spec);
+        for request in requests {
+            let unit = first.drive().unit();
+            first.send(&rtu::encode(unit, &request));
+        }
+        let second = rig(model, &[], &spec).with_state(&first.state());
+        prop_assert_eq!(second.map(|rig| rig.state()), Ok(first.state()));
+    }
+}
+
 /// Does the row at `address` simply hold what is written?
 fn plain(rig: &Rig, address: u16) -> bool {
     let model = rig.drive().model();

@@ -4,4 +4,5 @@ mod command_line;
 mod masters;
 mod ports;
 mod program;
+mod state;
 mod virtual_time;

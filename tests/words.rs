@@ -4,6 +4,7 @@
 
 mod homing;
 mod motion;
+mod segment;
 
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
@@ -83,21 +84,71 @@ fn each_input_acts_from_each_source() {
                 }
                 Input::LimitPos | Input::LimitNeg => {
                     let away = if input == Input::LimitPos { -600i16 } else { 600 };
-                    set(&mut rig, "P002", (-away) as u16);
+                    write_row(&mut rig, "P002", (-away) as u16);
                     running(&mut rig);
                     source(&mut rig, input, true);
                     assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
                     give(&mut rig, Action::RunStart);
                     assert!(!rig.drive().output(Output::Moving), "into it: {place}");
-                    set(&mut rig, "P002", away as u16);
+                    write_row(&mut rig, "P002", away as u16);
                     give(&mut rig, Action::RunStart);
                     assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
                 }
                 Input::HomeStart => {
-                    set(&mut rig, "P040", 0x1000);
+                    write_row(&mut rig, "P040", 0x1000);
                     give(&mut rig, Action::Enable);
                     source(&mut rig, input, true);
                     assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
+                Input::InchPos | Input::InchNeg | Input::Run => {
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    rig.advance(Duration::from_millis(500));
+                    let want = match input {
+                        Input::InchPos => 30,
+                        Input::InchNeg => -30,
+                        _ => 60,
+                    };
+                    assert_eq!(rig.drive().quantity(Quantity::SpeedActual), want, "{place}");
+                    source(&mut rig, input, false);
+                    rig.advance(Duration::from_millis(100));
+                    assert!(!rig.drive().output(Output::Moving), "{place}{}", rig.log());
+                }
+                Input::MoveStart | Input::SegmentStart => {
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    source(&mut rig, input, false);
+                    rig.advance(Duration::from_secs(5));
+                    let want = if input == Input::MoveStart { 200_000 } else { 40_000 };
+                    assert_eq!(rig.drive().quantity(Quantity::PositionActual), want, "{place}");
+                }
+                Input::SegmentStep => {
+                    segment::chain(&mut rig, 0x0002, 0);
+                    assert_eq!(rig.drive().quantity(Quantity::PositionActual), 40_000, "{place}");
+                    source(&mut rig, input, true);
+                    rig.advance(Duration::from_secs(5));
+                    assert_eq!(rig.drive().quantity(Quantity::PositionActual), -5000, "{place}");
+                }
+                Input::SegmentRun | Input::SegmentReverse => {
+                    give(&mut rig, Action::Enable);
+                    if input == Input::SegmentReverse {
+                        by_bit(&mut rig, Input::SegmentRun, true);
+                    }
+                    source(&mut rig, input, true);
+                    rig.advance(Duration::from_millis(500));
+                    let want = if input == Input::SegmentRun { 60 } else { -60 };
+                    assert_eq!(rig.drive().quantity(Quantity::SpeedActual), want, "{place}");
+                    source(&mut rig, input, false);
+                    rig.advance(Duration::from_millis(500));
+                    let want = if input == Input::SegmentRun { 0 } else { 60 };
+                    assert_eq!(rig.drive().quantity(Quantity::SpeedActual), want, "{place}");
+                }
+                Input::Select0 | Input::Select1 | Input::Select2 | Input::Select3 => {
+                    source(&mut rig, input, true);
+                    let want = 16 + (1 << (input as u8 - Input::Select0 as u8));
+                    assert_eq!(rig.drive().quantity(Quantity::SegmentNext), want, "{place}");
+                    source(&mut rig, input, false);
+                    assert_eq!(rig.drive().quantity(Quantity::SegmentNext), 16, "{place}");
                 }
                 Input::AlarmForce => {
                     source(&mut rig, input, true);
@@ -131,7 +182,7 @@ fn each_output_shows_both_ways() {
                 let machine =
                     Machine { hard_stop: Some([-100_000, 100_000]), ..Machine::default() };
                 rig = acme(&DeviceSpec { machine, ..DeviceSpec::default() });
-                set(&mut rig, "P030", 1);
+                write_row(&mut rig, "P030", 1);
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::HomeStart);
                 rig.advance(Duration::from_secs(5));
@@ -141,8 +192,13 @@ fn each_output_shows_both_ways() {
             Output::BeyondPos | Output::BeyondNeg => {
                 let position = if output == Output::BeyondPos { 500_001 } else { -500_001 };
                 rig = acme(&DeviceSpec { position, ..DeviceSpec::default() });
-                set(&mut rig, "P042", 0x20);
+                write_row(&mut rig, "P042", 0x20);
             }
+            Output::Segment0 => segment::start(&mut rig, &[Input::Select0]),
+            Output::Segment1 => segment::start(&mut rig, &[Input::Select1]),
+            Output::Segment2 => segment::start(&mut rig, &[Input::Select2]),
+            Output::Segment3 => segment::start(&mut rig, &[Input::Select3]),
+            Output::Segment4 => segment::start(&mut rig, &[]),
         }
         seen.push(shown(&rig, output));
         assert!(seen[0] != seen[1], "`{}` is always {}", output.name(), seen[0]);
@@ -167,6 +223,15 @@ fn each_quantity_shows() {
             Quantity::AlarmCode => {
                 raise(&mut rig, AlarmCause::Overload);
                 0x41
+            }
+            Quantity::SegmentRunning => {
+                segment::start(&mut rig, &[Input::Select0, Input::Select1]);
+                by_bit(&mut rig, Input::Select0, false);
+                19
+            }
+            Quantity::SegmentNext => {
+                by_bit(&mut rig, Input::Select1, true);
+                18
             }
             Quantity::UnitInUse | Quantity::UnitSwitches => 9,
         };
@@ -233,10 +298,11 @@ fn each_alarm_has_its_number() {
     assert_eq!(numbers, [0x31, 0x32, 0x33, 0x41, 0x51, 0x61, 0x71, 0x72, 0x73, 0x99]);
 }
 
-/// A drive with a run of 60 rpm and a move of 200000 counts to make, unless `spec` says otherwise.
+/// A drive with a run of 60 rpm, a move of 200000 counts and segments of 40000 and -45000 to make, unless
+/// `spec` says otherwise.
 fn acme(spec: &DeviceSpec) -> Rig {
     let mut spec = spec.clone();
-    for (row, value) in [("P002", 600), ("P003", 200_000)] {
+    for (row, value) in [("P002", 600), ("P003", 200_000), ("S161", 40_000), ("S171", -45_000)] {
         spec.set.entry(row.to_owned()).or_insert(value);
     }
     rig_of(ACME, &[], &spec)
@@ -265,9 +331,9 @@ fn write(rig: &mut Rig, row: RowId, value: u16) {
     assert_eq!(answer, to_hex(&request), "{}", rig.log());
 }
 
-/// Writes the row called `name`.
-fn set(rig: &mut Rig, name: &str, value: u16) {
-    let row = rig.drive().model().map.find(name).expect("a row of the model");
+/// Writes the row called `id`.
+fn write_row(rig: &mut Rig, id: &str, value: u16) {
+    let row = rig.drive().model().map.find(id).expect("a row of the model");
     write(rig, row, value);
 }
 

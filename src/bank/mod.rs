@@ -4,13 +4,17 @@
 //! refusal and change nothing; [`Bank::commit`] cannot fail. The bank knows rows, layers and locks. It does not
 //! know axes or signals: what the rest of the drive has to say about a write comes in through a [`Gate`].
 
+mod kept;
 mod ladder;
 mod plan;
+mod wear;
 
+pub use kept::{Kept, KeptRow};
 pub use ladder::Causes;
 pub use plan::{ReadPlan, WritePlan};
+pub use wear::{Haste, OFTEN, SOON, is_worn};
 
-use crate::model::{Layer, Model, Order, Row, RowId, WordOrder};
+use crate::model::{Model, Order, Row, RowId, WordOrder};
 
 /// What the rest of the drive says about locked rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -26,13 +30,18 @@ pub struct Bank {
     ram: Box<[u32]>,
     /// Back after power-off, by row.
     store: Box<[u32]>,
+    /// How often each was stored by itself, by row.
+    writes: Box<[u32]>,
+    /// How often all were stored at once.
+    saves: u32,
 }
 
 impl Bank {
     /// Values as they leave the factory.
     pub fn new(model: &Model, station: usize) -> Self {
         let factory = factory(model, station);
-        Self { ram: factory.clone(), store: factory }
+        let writes = vec![0; factory.len()].into_boxed_slice();
+        Self { ram: factory.clone(), store: factory, writes, saves: 0 }
     }
 
     /// The value in force.
@@ -62,9 +71,11 @@ impl Bank {
     pub fn commit(&mut self, model: &Model, plan: &WritePlan) {
         for (row, raw) in plan.values() {
             self.set(row, raw);
-            if plan.layer() == Layer::RamAndStore && !model.map.row(row).volatile {
-                self.store[usize::from(row.0)] = raw;
-            }
+        }
+        for (row, raw) in plan.stored(model) {
+            self.store[usize::from(row.0)] = raw;
+            let writes = &mut self.writes[usize::from(row.0)];
+            *writes = writes.saturating_add(1);
         }
     }
 
@@ -75,11 +86,14 @@ impl Bank {
                 self.store[usize::from(id.0)] = self.raw(id);
             }
         }
+        self.saves = self.saves.saturating_add(1);
     }
 
-    /// Puts every value back as it left the factory, in force and kept.
+    /// Puts every value back as it left the factory, in force and kept. What was worn stays worn.
     pub fn restore_factory(&mut self, model: &Model, station: usize) {
-        *self = Self::new(model, station);
+        self.ram = factory(model, station);
+        self.store.clone_from(&self.ram);
+        self.saves = self.saves.saturating_add(1);
     }
 
     /// Power off and on: kept values return, the others are lost.

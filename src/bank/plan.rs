@@ -61,6 +61,13 @@ impl WritePlan {
         let raws = self.raws[..self.len].iter();
         raws.enumerate().map(|(i, raw)| (RowId(self.first.0 + i as u16), *raw))
     }
+
+    /// Those of them that are kept over power-off.
+    pub fn stored<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (RowId, u32)> + 'a {
+        let kept = |(row, _): &(RowId, u32)| !model.map.row(*row).volatile;
+        let stores = self.layer == Layer::RamAndStore;
+        self.values().filter(move |value| stores && kept(value))
+    }
 }
 
 impl Bank {

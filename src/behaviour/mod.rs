@@ -1,11 +1,13 @@
 //! State machines of a drive, one a file. They speak words; none knows a register, a vendor or a bus.
 
+mod chain;
 mod hold;
 mod motor;
 mod phase;
 mod servo;
 
+pub use chain::{Chain, MOST_WAITS, Rule, Wait};
 pub use hold::Hold;
 pub use motor::{HomeOrder, Motor, Ramp, Wants};
-pub use phase::Stage;
+pub use phase::{Phase, Stage};
 pub use servo::{Servo, Trip};

@@ -16,11 +16,12 @@ pub use home::HomeOrder;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
-use crate::motion::{Machine, Move, State, Trajectory};
+use crate::motion::{Machine, Move, State, Trajectory, Way};
 use crate::time::{Duration, Instant};
 use crate::words::{HomeEnd, Inputs, LimitStop};
 use due::Due;
 use home::Homing;
+use std::cmp::Ordering;
 use std::collections::VecDeque;
 
 /// A speed and how to get to it and from it; counts per second, the sign is the direction, and counts per
@@ -33,6 +34,8 @@ pub struct Ramp {
     pub accel: f64,
     /// Getting slower.
     pub decel: f64,
+    /// A magnitude that is taken at once.
+    pub start_speed: f64,
 }
 
 /// What the levels ask for right now.
@@ -126,6 +129,22 @@ impl Motor {
         self.phase == Phase::Homing
     }
 
+    /// What it is doing.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// When the motion under way first shows `position`, a count of the machine; `now` if it is there.
+    pub fn reaches(&self, now: Instant, position: i64) -> Option<Instant> {
+        // A count is shown from its lower edge on, so from above it begins at the next one.
+        let mark = |count: i64, way| self.trajectory.crossing(count as f64, way, now);
+        match position.cmp(&self.position(now)) {
+            Ordering::Equal => Some(now),
+            Ordering::Greater => mark(position, Way::Rising),
+            Ordering::Less => mark(position.saturating_add(1), Way::Falling),
+        }
+    }
+
     /// Does it stand where its last move was to end?
     pub fn is_in_position(&self) -> bool {
         self.in_position
@@ -215,7 +234,11 @@ impl Motor {
         self.advance(now);
     }
 
-    fn may_start(&self, interrupt: bool) -> Result<(), Ignored> {
+    /// May a motion start right now, or take the place of one under way where it may `interrupt`?
+    ///
+    /// # Errors
+    /// Why not: without power, while held, or while it moves.
+    pub fn may_start(&self, interrupt: bool) -> Result<(), Ignored> {
         match () {
             () if !self.wants.power => Err(Ignored::PowerOff),
             () if self.is_held() => Err(Ignored::Held),
@@ -245,8 +268,10 @@ impl Motor {
     }
 
     fn go(&mut self, now: Instant, ramp: Ramp, phase: Phase) {
-        let Ramp { speed, accel, decel } = ramp;
-        let trajectory = Trajectory::to_speed(now, self.state(now), speed, accel, decel);
+        let Ramp { speed, accel, decel, start_speed } = ramp;
+        let from = self.state(now);
+        let trajectory =
+            Trajectory::to_speed_with_start(now, from, speed, accel, decel, start_speed);
         (self.decel, self.forward) = (decel, speed >= 0.0);
         self.begin(now, trajectory, phase);
     }

@@ -4,7 +4,7 @@ use crate::words::{HomeEnd, Step};
 
 /// What an axis is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Phase {
+pub enum Phase {
     /// Nothing.
     Standing,
     /// Going to a position.

@@ -1,5 +1,6 @@
 //! One device of a bench: a model with its options, and what each station of it is set to.
 
+use crate::bank::Kept;
 use crate::drive::Setup;
 use crate::model::{Model, RowId};
 use crate::motion::Machine;
@@ -94,6 +95,7 @@ impl Device {
             );
             Setup {
                 station,
+                kept: Kept::default(),
                 values,
                 switches,
                 terminals,

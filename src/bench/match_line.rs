@@ -5,11 +5,12 @@ use crate::drive::Setup;
 use crate::model::{Coded, Model, RowId};
 use crate::serial::Mode;
 
-/// Sets the serial parameters of `device` to `mode`.
+/// Sets the serial parameters of `device` to `mode`. Unless somebody has `told` the line how to talk, what
+/// masters have stored in an earlier run stays.
 ///
 /// # Errors
 /// One sentence, if the drive has no code for that speed or format; it could never be on such a line.
-pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
+pub fn match_line(device: &mut Device, mode: Mode, told: bool) -> Result<(), String> {
     let Mode { ascii, settings } = mode;
     let model = device.model.clone();
     let line = &model.line;
@@ -33,8 +34,12 @@ pub fn match_line(device: &mut Device, mode: Mode) -> Result<(), String> {
     for setup in &mut device.setups {
         agrees(&model, setup, &line.baud, baud, mode)?;
         agrees(&model, setup, &line.format, format, mode)?;
-        put(&model, setup, &line.baud, baud);
-        put(&model, setup, &line.format, format);
+        if told || !setup.kept.is_stored(line.baud.row) {
+            put(&model, setup, &line.baud, baud);
+        }
+        if told || !setup.kept.is_stored(line.format.row) {
+            put(&model, setup, &line.format, format);
+        }
     }
     Ok(())
 }
@@ -65,7 +70,8 @@ fn put<T>(model: &Model, setup: &mut Setup, coded: &Coded<T>, code: i64) {
     let row = model.map.row(coded.row);
     let mut of_station = model.stations[setup.station].init.iter();
     let of_station = of_station.find(|(id, _)| *id == coded.row).map(|(_, raw)| *raw);
-    let present = start_value(setup, coded.row).or(of_station).unwrap_or(row.init);
+    let present = start_value(setup, coded.row).or(setup.kept.raw(coded.row));
+    let present = present.or(of_station).unwrap_or(row.init);
     let raw = match coded.digit {
         None => row.kind.raw(code),
         Some(digit) => present & !(0xF << (4 * digit)) | (code as u32) << (4 * digit),

@@ -8,12 +8,14 @@ mod machine;
 mod match_line;
 mod parse;
 pub mod raw;
+mod state;
 mod wire_spec;
 
 pub use device::{Device, DeviceSpec, SpecProblem, Wish};
 pub use machine::{MachineProblem, machine};
 pub use match_line::match_line;
-pub use parse::{kind_of, parse};
+pub use parse::{kind_of, parse, parse_saved};
+pub use state::{Saved, StateFile};
 pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;

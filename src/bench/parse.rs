@@ -2,10 +2,11 @@
 
 use super::raw::{KEYS, RawBenchDrive, RawBenchLine};
 use super::{
-    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, SpecProblem, WireSpec,
-    Wish, machine, match_line,
+    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, Saved, SpecProblem,
+    WireSpec, Wish, machine, match_line,
 };
-use crate::drive::Drive;
+use crate::bank::Kept;
+use crate::drive::{Drive, Setup};
 use crate::model::{Choices, Model};
 use crate::problem::{At, Path, Problem, Seg, section};
 use crate::serial::Settings;
@@ -29,11 +30,23 @@ pub fn kind_of(text: &str) -> &'static str {
 /// Every problem of the file. Of what is wrong inside a model file only the first is told; check that
 /// file itself.
 pub fn parse(text: &str, library: &dyn Library) -> Result<Bench, Vec<Problem>> {
+    parse_saved(text, library, &mut Saved::default())
+}
+
+/// Reads a bench and gives its drives what an earlier run has `saved`.
+///
+/// # Errors
+/// As [`parse`](fn@parse). What is wrong with `saved` itself it tells when it is finished.
+pub fn parse_saved(
+    text: &str,
+    library: &dyn Library,
+    saved: &mut Saved,
+) -> Result<Bench, Vec<Problem>> {
     let (file, problems) = section::tree(text)?;
     if !problems.is_empty() {
         return Err(problems);
     }
-    let mut reader = Reader { library, models: BTreeMap::new(), problems };
+    let mut reader = Reader { library, saved, models: BTreeMap::new(), problems };
     let bench = reader.bench(&file);
     match reader.problems.is_empty() {
         true => Ok(bench),
@@ -49,6 +62,7 @@ struct Head {
 
 struct Reader<'a> {
     library: &'a dyn Library,
+    saved: &'a mut Saved,
     /// Drives of one model with the same options share it.
     models: BTreeMap<(String, Choices), Arc<Model>>,
     problems: Vec<Problem>,
@@ -99,7 +113,10 @@ impl Reader<'_> {
         if devices.is_empty() {
             self.problems.push(Problem::key(path.key("drives"), "a line needs a drive"));
         }
-        let devices: Vec<Device> = devices.into_iter().collect::<Option<_>>()?;
+        let mut devices: Vec<Device> = devices.into_iter().collect::<Option<_>>()?;
+        for (i, device) in devices.iter_mut().enumerate() {
+            self.saved.give(&name, i, device);
+        }
         let line = self.wired(name, port?, raw, devices, path)?;
         self.addresses(&line, path);
         Some(line)
@@ -239,9 +256,10 @@ impl Reader<'_> {
             }
         };
         let wire = WireSpec::of(&devices, settings, raw.ascii, raw.strict);
+        let told = settings.is_some() || raw.ascii.is_some();
         if !matches!(port, PortSpec::Tcp(_)) {
             for (i, device) in devices.iter_mut().enumerate() {
-                if let Err(what) = match_line(device, wire.mode) {
+                if let Err(what) = match_line(device, wire.mode, told) {
                     let path = path.key("drives").index(i).key("model");
                     let advice = "choose `settings` that all drives of the line know";
                     self.problems.push(Problem::value(path, what).advise(advice));
@@ -251,12 +269,14 @@ impl Reader<'_> {
         Some(BenchLine { name, port, wire, devices })
     }
 
-    /// No two stations of a line may answer to one address.
+    /// No two stations of a line may answer to one address. What masters have saved since may clash: real
+    /// drives do.
     fn addresses(&mut self, line: &BenchLine, path: &Path) {
         let mut taken: BTreeMap<u8, usize> = BTreeMap::new();
         for (i, device) in line.devices.iter().enumerate() {
             for setup in &device.setups {
-                let unit = Drive::new(device.model.clone(), setup, Instant::ZERO).unit();
+                let new = Setup { kept: Kept::default(), ..setup.clone() };
+                let unit = Drive::new(device.model.clone(), &new, Instant::ZERO).unit();
                 let Some(other) = taken.insert(unit, i).filter(|_| unit != crate::wire::BROADCAST)
                 else {
                     continue;

@@ -71,6 +71,8 @@ impl Bus {
                 (Response::Exception(exception).encode(), Some(refusal))
             }
         };
+        // What an answer confirms must be there after a power failure.
+        self.keep(id);
         self.transmit(link, unit, &answer);
         self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
         self.after_drive(id);

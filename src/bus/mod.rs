@@ -115,6 +115,11 @@ impl Bus {
         &self.drives[usize::from(id.0)]
     }
 
+    /// Which device of the line a drive is a station of.
+    pub fn device(&self, id: DriveId) -> u16 {
+        self.devices[usize::from(id.0)]
+    }
+
     /// The drive that answers to `unit`.
     pub fn find(&self, unit: u8) -> Option<DriveId> {
         self.by_unit[usize::from(unit)]
@@ -199,8 +204,16 @@ impl Bus {
         self.outputs.push_back(Output::Event(Event { at: self.now, what }));
     }
 
+    /// Has what a drive has stored kept.
+    fn keep(&mut self, id: DriveId) {
+        if self.drives[usize::from(id.0)].take_stored() {
+            self.outputs.push_back(Output::Keep(id));
+        }
+    }
+
     /// Collects what a drive has to tell and when it wants to be woken.
     fn after_drive(&mut self, id: DriveId) {
+        self.keep(id);
         if self.drives[usize::from(id.0)].take_restart() {
             self.power_cycle(self.devices[usize::from(id.0)]);
         }

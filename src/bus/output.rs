@@ -12,6 +12,9 @@ pub struct LinkId(pub(super) u32);
 /// What leaves a bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Output {
+    /// A drive has stored something: what it keeps over power-off has to be safe before anything that comes
+    /// behind this leaves, or an answer confirms what a power failure takes back.
+    Keep(DriveId),
     /// A whole answer, to be sent in one write.
     Transmit {
         /// Where to.

@@ -63,6 +63,9 @@ pub struct RunArgs {
     /// A model option (crc_error=silent) or a register's start value (accel_time=200); repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Keep what drives keep over power-off in FILE, from run to run; --set wins over it
+    #[arg(long, value_name = "FILE")]
+    pub state: Option<PathBuf>,
     /// Seed of the run, told on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

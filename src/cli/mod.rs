@@ -10,6 +10,7 @@ mod output;
 mod run;
 mod schema;
 mod show;
+mod state;
 
 use args::{Args, Command};
 use clap::Parser;

@@ -1,9 +1,11 @@
 //! `drivemu run`: flags or a bench file become a bench, and the shell runs it.
 
 use super::args::{LogFormatArg, ParityArg, RunArgs};
+use super::state::State;
 use super::{FAILED, Failure, INVALID, NO_PORT};
 use drivemu::bench::{
-    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, kind_of, match_line, parse,
+    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, Saved, WireSpec, kind_of, match_line,
+    parse_saved,
 };
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
@@ -22,7 +24,10 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     if !(1e-3..=1e6).contains(&args.rate) {
         return Err(Failure::invalid("--rate takes a number from 0.001 to 1000000"));
     }
-    let (bench, base) = bench(&args)?;
+    let (store, state) = args.state.as_deref().map(State::open).transpose()?.unzip();
+    let mut state = state.unwrap_or_default();
+    let (bench, base) = bench(&args, &mut state.saved)?;
+    state.finish()?;
     let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
     let options = RunOptions {
         seed,
@@ -33,6 +38,7 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
         },
         log_file: args.log_file,
         ready_file: args.ready_file,
+        store,
         base,
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -51,14 +57,14 @@ fn draw_seed() -> u64 {
 }
 
 /// The bench to run, and what its paths are relative to.
-fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
+fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf), Failure> {
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     refuse_swallowed_model(args)?;
     let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
     if kind_of(&text) == "bench" {
         refuse_flags_of_a_line(args)?;
         let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();
-        let bench = parse(&text, &FileLibrary::new(&base));
+        let bench = parse_saved(&text, &FileLibrary::new(&base), saved);
         let bench = bench.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
         return Ok((bench, base));
     }
@@ -69,7 +75,7 @@ fn bench(args: &RunArgs) -> Result<(Bench, PathBuf), Failure> {
     let plain = compile(&Choices::new())?;
     let (choices, set) = wishes(args, &plain)?;
     let model = if choices.is_empty() { plain } else { compile(&choices)? };
-    let line = line(args, Arc::new(model), set)?;
+    let line = line(args, Arc::new(model), set, saved)?;
     Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new()))
 }
 
@@ -140,6 +146,7 @@ fn line(
     args: &RunArgs,
     model: Arc<Model>,
     set: BTreeMap<String, i64>,
+    saved: &mut Saved,
 ) -> Result<BenchLine, Failure> {
     let spec = DeviceSpec { unit: args.unit, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {
@@ -149,17 +156,20 @@ fn line(
         };
         Failure::invalid(problems.iter().map(sentence).collect::<String>())
     })?;
+    let name = "line";
+    saved.give(name, 0, &mut device);
     let port = port(args);
     let ascii = args.ascii.then_some(true);
     let own = WireSpec::of(std::slice::from_ref(&device), None, ascii, false);
     let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
     let wire = WireSpec { mode, ..own };
     if !matches!(port, PortSpec::Tcp(_)) {
-        match_line(&mut device, wire.mode).map_err(Failure::invalid)?;
+        let told = args.ascii || mode != own.mode;
+        match_line(&mut device, wire.mode, told).map_err(Failure::invalid)?;
     } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }
-    Ok(BenchLine { name: "line".into(), port, wire, devices: vec![device] })
+    Ok(BenchLine { name: name.into(), port, wire, devices: vec![device] })
 }
 
 fn port(args: &RunArgs) -> PortSpec {

@@ -214,7 +214,8 @@ fn goes_by(model: &Model, id: RowId) -> String {
     let axis = &model.wiring.axis;
     let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
-    let names: Vec<_> = settings.chain(counts).collect();
+    let segments = axis.segments.rows().any(|row| row == id).then_some("segments");
+    let names: Vec<_> = settings.chain(counts).chain(segments).collect();
     if names.is_empty() { "settings".into() } else { names.join(", ") }
 }
 

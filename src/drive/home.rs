@@ -47,7 +47,7 @@ impl Drive {
     /// Looks for the origin, or tells why not.
     pub(super) fn home_by(&mut self, starter: HomeStarter) {
         let done = self.home(starter);
-        self.tell_stages();
+        self.tell_stages(None);
         if let Err(why) = done {
             self.changes.push_back(Change::Ignored { action: Action::HomeStart, why });
         }
@@ -82,27 +82,28 @@ impl Drive {
 
     fn home_order(&self, homing: &Homing, number: i64) -> Option<HomeOrder> {
         let method = *homing.methods.get(&number)?;
-        let fast = self.speed(Setting::HomeFast).abs();
+        let fast = self.axis().speed(Setting::HomeFast).abs();
         let finish = self.finish(homing)?;
-        let way = self.counts(Setting::HomeWay).filter(|_| finish.go);
+        let way = self.axis().counts(Setting::HomeWay).filter(|_| finish.go);
         Some(HomeOrder {
             method,
             fast,
-            slow: self.speed(Setting::HomeSlow).abs(),
-            accel: self.slope(Setting::HomeAccel, fast).unwrap_or(0.0),
+            slow: self.axis().speed(Setting::HomeSlow).abs(),
+            accel: self.axis().slope(Setting::HomeAccel, fast).unwrap_or(0.0),
             limit: self.or(&homing.limit, Homing::LIMIT)?,
             source: self.or(&homing.source, Homing::SOURCE)?,
             index: self.or(&homing.index, Homing::INDEX)?,
             marks: Index { every: self.counts_per_rev() as i64, offset: 0 },
             stop: homing.stop,
             way: way.unwrap_or(0),
-            collision: self.counts(Setting::HomeCollision).unwrap_or(0),
+            collision: self.axis().counts(Setting::HomeCollision).unwrap_or(0),
             time_limit: self.home_time_limit(homing),
         })
     }
 
     fn home_time_limit(&self, homing: &Homing) -> Option<Duration> {
-        let (seconds, _) = self.setting(Setting::HomeTimeLimit).filter(|(time, _)| *time > 0.0)?;
+        let (seconds, _) =
+            self.axis().value(Setting::HomeTimeLimit).filter(|(time, _)| *time > 0.0)?;
         let factor = homing.time_factor.map(|it| it.of(self.bank.value(&self.model, it.row)));
         let factor = factor.filter(|it| *it > 0).unwrap_or(1);
         Some(Duration::from_secs_f64(seconds * factor as f64))
@@ -127,10 +128,10 @@ impl Drive {
         let model = self.model.clone();
         let finish = model.wiring.homing.as_ref().and_then(|homing| self.finish(homing));
         let finish = finish.unwrap_or(FINISH);
-        let way = self.counts(Setting::HomeWay).unwrap_or(0);
+        let way = self.axis().counts(Setting::HomeWay).unwrap_or(0);
         let goes_on = finish.go && !finish.of_origin;
         let point = if goes_on { origin.saturating_add(way) } else { origin };
-        let coordinate = self.counts(Setting::HomeCoordinate).unwrap_or(0);
+        let coordinate = self.axis().counts(Setting::HomeCoordinate).unwrap_or(0);
         let says = |position: i64| point.saturating_sub(position);
         self.zero = match finish.position {
             OriginPosition::Coordinate => says(coordinate),

@@ -6,8 +6,12 @@
 //! other drive.
 
 mod home;
+mod levels;
+mod memory;
 mod motion;
 mod react;
+mod segments;
+mod settings;
 mod setup;
 mod show;
 mod signals;
@@ -15,7 +19,7 @@ mod signals;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Hold, Motor, Servo, Trip};
+use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Trip};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -23,6 +27,8 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use levels::{Level, Velocity};
+use memory::Memory;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -35,6 +41,7 @@ pub struct Drive {
     now: Instant,
     /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
     bank: Bank,
+    memory: Memory,
     servo: Servo,
     /// Watchdogs of the input words.
     holds: Vec<Hold>,
@@ -45,6 +52,13 @@ pub struct Drive {
     unit: u8,
     mode: Option<Mode>,
     motor: Motor,
+    /// What levels ask for, and how that began.
+    run: Option<(Level, Ramp)>,
+    /// The velocity segment that is active.
+    velocity: Option<Velocity>,
+    /// Number of the position segment that started last.
+    segment: u16,
+    chain: Chain,
     /// Where the machine is when the position register says 0.
     zero: i64,
     /// Has an origin been found since power came on?
@@ -65,12 +79,17 @@ impl Drive {
     /// A drive of `model` as the bench sets it up, switched on at `now`.
     pub fn new(model: Arc<Model>, setup: &Setup, now: Instant) -> Self {
         let mut bank = Bank::new(&model, setup.station);
+        bank.recall(&model, &setup.kept);
         setup.values.iter().for_each(|(row, raw)| bank.preset(&model, *row, *raw));
         let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
             holds: vec![Hold::default(); words],
             motor: Motor::standing(now, setup.start as f64, model.wiring.axis.coast, setup.machine),
+            run: None,
+            velocity: None,
+            segment: 0,
+            chain: Chain::default(),
             zero: 0,
             home_done: false,
             method: 0,
@@ -79,6 +98,7 @@ impl Drive {
             station: setup.station,
             now,
             bank,
+            memory: Memory::default(),
             terminals: setup.terminals,
             inputs: Inputs::default(),
             switches: setup.switches,
@@ -182,9 +202,10 @@ impl Drive {
                 self.gather_inputs();
             }
             self.motor.advance(self.now);
-            self.tell_stages();
+            self.tell_stages(None);
             self.expire_words();
             self.settle();
+            self.advance_chain();
         }
         self.now = self.now.max(now);
     }
@@ -192,7 +213,8 @@ impl Drive {
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let holds = self.holds.iter().filter_map(Hold::deadline);
-        holds.chain(self.servo.deadline()).chain(self.motor.deadline()).min()
+        let ends = [self.servo.deadline(), self.motor.deadline(), self.chain.deadline()];
+        holds.chain(ends.into_iter().flatten()).min()
     }
 
     /// The next change that has not been told yet.
@@ -220,6 +242,7 @@ impl Drive {
         let gate = Gate { enabled: self.servo.is_enabled() };
         let plan = self.bank.plan_write(&self.model, span, words, gate)?;
         self.bank.commit(&self.model, &plan);
+        self.note_stored(&plan);
         self.react(&plan);
         Ok(())
     }
@@ -262,11 +285,16 @@ impl Drive {
             self.changes.push_back(Change::Enabled(false));
         }
         let servo = self.model.wiring.servo;
+        self.memory.power_on();
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         let (position, coast) = (self.motor.state(now).position, self.model.wiring.axis.coast);
         self.motor = Motor::standing(now, position, coast, *self.motor.machine());
         (self.home_done, self.never_enabled) = (false, true);
+        (self.run, self.velocity, self.segment) = (None, None, 0);
+        self.chain.end();
         self.holds.iter_mut().for_each(Hold::stop);
+        // What is active from the start has not risen.
+        self.inputs = self.active_inputs();
         self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
@@ -275,8 +303,6 @@ impl Drive {
         if from.is_some() && from != mode {
             self.changes.push_back(Change::Mode { from, to: mode });
         }
-        // What is active when power comes on does not rise.
-        self.inputs = self.active_inputs();
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
         self.settle();
@@ -325,12 +351,14 @@ impl Drive {
             Action::StoreAll => {
                 self.bank.store_all(&self.model);
                 self.changes.push_back(Change::Stored);
+                self.note_stored_all();
             }
             Action::RestoreFactory => {
                 self.bank.restore_factory(&self.model, self.station);
                 // Input words are 0 then, so there is nothing left to fall back.
                 self.holds.iter_mut().for_each(Hold::stop);
                 self.changes.push_back(Change::FactoryRestored);
+                self.note_stored_all();
                 self.gather_inputs();
                 self.follow_line_settings();
             }

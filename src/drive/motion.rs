@@ -1,12 +1,9 @@
-//! The axis as its drive sees it: what rows say about motions, in counts, and what motions tell, in the
-//! drive's coordinate.
+//! The axis as its drive sees it: orders and levels become motions, and what motions tell is in the drive's
+//! coordinate. What rows say about them is read in `settings.rs`.
 
 use super::Drive;
-use crate::behaviour::{Ramp, Stage, Wants};
+use crate::behaviour::{Stage, Wants};
 use crate::event::Change;
-use crate::model::{Choice, Counts};
-use crate::motion::Move;
-use crate::units::Dimension;
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
 
 impl Drive {
@@ -24,10 +21,17 @@ impl Drive {
     /// at the end of each motion.
     pub(super) fn settle(&mut self) {
         loop {
-            let wants = self.wants();
+            let run = self.wanted_run();
+            let wants = Wants { jog: run.map(|(_, ramp)| ramp), ..self.wants() };
+            if self.changes_over(run) {
+                self.motor.follow(self.now, Wants { jog: None, ..wants });
+            }
             self.motor.follow(self.now, wants);
+            let changed = self.tell_stages(run.and_then(|(level, _)| level.segment()));
+            self.run = run;
+            self.settle_segments(wants.power && !wants.stop && !wants.quick_stop);
             // An axis that tells of a fault has changed what is wanted of it.
-            if !self.tell_stages() {
+            if !changed {
                 break;
             }
         }
@@ -36,8 +40,8 @@ impl Drive {
 
     /// Positions of the machine between which the axis has to stay, if such are in force.
     pub(super) fn soft_limits(&self) -> Option<[i64; 2]> {
-        let low = self.counts(Setting::SoftLimitNeg)?;
-        let high = self.counts(Setting::SoftLimitPos)?;
+        let low = self.axis().counts(Setting::SoftLimitNeg)?;
+        let high = self.axis().counts(Setting::SoftLimitPos)?;
         let rule = &self.model.wiring.limits.soft;
         let in_force = match self.chosen(rule).unwrap_or(SoftLimitRule::Always) {
             SoftLimitRule::Off => false,
@@ -47,11 +51,12 @@ impl Drive {
         in_force.then(|| [low, high].map(|it| self.zero.saturating_add(it)))
     }
 
-    /// Tells what the axis has told. Has it changed what is wanted of the axis?
-    pub(super) fn tell_stages(&mut self) -> bool {
+    /// Tells what the axis has told, which is about a segment where `segment` says so. Has it changed what is
+    /// wanted of the axis?
+    pub(super) fn tell_stages(&mut self, segment: Option<u16>) -> bool {
         let mut changed = false;
         while let Some(stage) = self.motor.poll_stage() {
-            let change = self.told(stage);
+            let change = self.told(stage, segment);
             self.changes.extend(change);
             changed |= self.follow_stage(stage);
         }
@@ -60,31 +65,31 @@ impl Drive {
 
     /// Carries out an order to the axis.
     pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) {
-        let (now, zero) = (self.now, self.zero);
+        let (now, model) = (self.now, self.model.clone());
+        let rows = &model.wiring.axis.settings;
         let done = match action {
             Action::MoveStart => {
-                let (by, how) = self.next_move();
-                let absolute = modifiers.has(Modifier::Absolute);
-                let target = |here: i64| (if absolute { zero } else { here }).saturating_add(by);
-                let interrupt = modifiers.has(Modifier::Interrupt);
-                self.motor.start_move(now, target, how, interrupt)
+                let [absolute, interrupt] =
+                    [Modifier::Absolute, Modifier::Interrupt].map(|it| modifiers.has(it));
+                self.go_to(rows, absolute, interrupt, None)
             }
             Action::RunStart => {
-                let speed = self.speed(Setting::RunSpeed);
-                let ramp = self.ramp(speed, Setting::RunAccel, Setting::RunDecel);
+                let ramp = self.settings(rows).run(false);
                 self.motor.start_run(now, ramp)
             }
             Action::HomeStart => self.home(HomeStarter::Command),
             Action::QuickStop => {
+                self.chain.end();
                 self.motor.quick_stop(now);
                 Ok(())
             }
             _ => {
+                self.chain.end();
                 self.motor.stop(now);
                 Ok(())
             }
         };
-        self.tell_stages();
+        self.tell_stages(None);
         if let Err(why) = done {
             self.changes.push_back(Change::Ignored { action, why });
         }
@@ -95,82 +100,35 @@ impl Drive {
         matches!(action, Action::StoreAll | Action::RestoreFactory) && self.motor.is_moving()
     }
 
+    /// What is wanted of the axis, apart from runs.
     fn wants(&self) -> Wants {
         let has = |input| self.inputs.has(input);
         Wants {
             power: self.servo.is_enabled(),
             stop: has(Input::Stop),
             quick_stop: has(Input::QuickStop),
-            jog: self.jog(has(Input::JogPos), has(Input::JogNeg)),
+            jog: None,
             switches: self.inputs,
             soft_limits: self.soft_limits(),
             limit_stop: self.chosen(&self.model.wiring.limits.stop).unwrap_or_default(),
-            deviation: self.counts(Setting::Deviation),
+            deviation: self.axis().counts(Setting::Deviation),
         }
     }
 
-    fn jog(&self, forward: bool, reverse: bool) -> Option<Ramp> {
-        let speed = match (forward, reverse) {
-            (true, false) => self.speed(Setting::JogSpeed).abs(),
-            (false, true) => -self.speed(Setting::JogSpeed).abs(),
-            _ => return None,
-        };
-        let ramp = || self.ramp(speed, Setting::JogAccel, Setting::JogDecel);
-        // Without a speed there is nothing to begin, and nothing to end again and again.
-        (speed != 0.0).then(ramp)
-    }
-
-    /// How far, or where to, and how.
-    fn next_move(&self) -> (i64, Move) {
-        let target = self.setting(Setting::MoveTarget).map_or(0.0, |(value, _)| value.round());
-        let speed = self.speed(Setting::MoveSpeed).abs();
-        let start_speed = self.speed(Setting::MoveStartSpeed).abs();
-        let change = (speed - start_speed).max(0.0);
-        let Ramp { accel, decel, .. } = self.ramp(change, Setting::MoveAccel, Setting::MoveDecel);
-        (target as i64, Move { start_speed, speed, accel, decel })
-    }
-
-    /// Slopes that reach `speed` from standstill; what slows down is what speeds up where no row says more,
-    /// and without either the speed changes at once.
-    pub(super) fn ramp(&self, speed: f64, accel: Setting, decel: Setting) -> Ramp {
-        let accel = self.slope(accel, speed.abs());
-        let decel = self.slope(decel, speed.abs()).or(accel);
-        Ramp { speed, accel: accel.unwrap_or(0.0), decel: decel.unwrap_or(0.0) }
-    }
-
-    /// Counts per second squared.
-    pub(super) fn slope(&self, setting: Setting, speed: f64) -> Option<f64> {
-        let (value, dimension) = self.setting(setting)?;
-        Some(match dimension {
-            Dimension::Time => speed / value,
-            _ => counts_per_s(value, self.counts_per_rev()),
-        })
-    }
-
-    /// Counts per second.
-    pub(super) fn speed(&self, setting: Setting) -> f64 {
-        let rpm = self.setting(setting).map_or(0.0, |(value, _)| value);
-        counts_per_s(rpm, self.counts_per_rev())
-    }
-
-    /// Counts, if a row holds them.
-    pub(super) fn counts(&self, setting: Setting) -> Option<i64> {
-        self.setting(setting).map(|(value, _)| value.round() as i64)
-    }
-
-    /// What a choice comes to, if there is one.
-    pub(super) fn chosen<T: Copy>(&self, choice: &Option<Choice<T>>) -> Option<T> {
-        choice.as_ref()?.get(|row| self.bank.value(&self.model, row))
-    }
-
     /// What the axis tells, as its drive tells it.
-    fn told(&self, stage: Stage) -> Option<Change> {
+    fn told(&self, stage: Stage, segment: Option<u16>) -> Option<Change> {
         let at = |position: i64| position.saturating_sub(self.zero);
         let method = self.method;
         Some(match stage {
-            Stage::Moves(to) => Change::Moves { to: at(to) },
+            Stage::Moves(to) => match segment {
+                None => Change::Moves { to: at(to) },
+                Some(number) => Change::PositionSegment { number, to: at(to) },
+            },
             Stage::Runs(speed) => Change::Runs { mrpm: self.mrpm(speed) },
-            Stage::Jogs(speed) => Change::Jogs { mrpm: self.mrpm(speed) },
+            Stage::Jogs(speed) => match segment {
+                None => Change::Jogs { mrpm: self.mrpm(speed) },
+                Some(number) => Change::VelocitySegment { number, mrpm: self.mrpm(speed) },
+            },
             Stage::Stops => Change::Stops,
             Stage::Coasts => Change::Coasts,
             Stage::Stands(position) => Change::Stands { at: at(position) },
@@ -194,24 +152,6 @@ impl Drive {
     fn mrpm(&self, speed: f64) -> i64 {
         (rpm(speed, self.counts_per_rev()) * 1000.0).round() as i64
     }
-
-    /// The value of a setting in the base unit of its dimension.
-    pub(super) fn setting(&self, setting: Setting) -> Option<(f64, Dimension)> {
-        let row = self.model.wiring.axis.setting(setting)?;
-        let unit = self.model.map.row(row).unit;
-        Some((self.bank.value(&self.model, row) as f64 * unit.scale, unit.dimension))
-    }
-
-    pub(super) fn counts_per_rev(&self) -> f64 {
-        match self.model.wiring.axis.counts_per_rev {
-            Counts::Fixed(counts) => counts.into(),
-            Counts::Row(row) => self.bank.value(&self.model, row) as f64,
-        }
-    }
-}
-
-fn counts_per_s(rpm: f64, counts_per_rev: f64) -> f64 {
-    rpm * counts_per_rev / 60.0
 }
 
 fn rpm(counts_per_s: f64, counts_per_rev: f64) -> f64 {

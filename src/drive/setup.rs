@@ -1,5 +1,6 @@
 //! What a bench says about one station before it is switched on.
 
+use crate::bank::Kept;
 use crate::motion::Machine;
 use crate::words::RowId;
 
@@ -8,7 +9,9 @@ use crate::words::RowId;
 pub struct Setup {
     /// Which station of the device, from 0.
     pub station: usize,
-    /// Start values, kept over power-off as if somebody had stored them.
+    /// What an earlier run has left in its memory.
+    pub kept: Kept,
+    /// Start values, kept over power-off as if somebody had stored them. They win over what was kept.
     pub values: Vec<(RowId, u32)>,
     /// The address switches.
     pub switches: u8,

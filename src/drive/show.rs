@@ -33,6 +33,8 @@ impl Drive {
         match quantity {
             Quantity::PositionActual => self.position(),
             Quantity::SpeedActual => self.rpm().round() as i64,
+            Quantity::SegmentRunning => self.segment.into(),
+            Quantity::SegmentNext => self.next_segment().into(),
             Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),

@@ -20,10 +20,12 @@ impl Drive {
             self.servo.reset(tell);
         }
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
+        self.select_velocity();
         self.settle();
         if now.risen_since(before).has(Input::HomeStart) {
             self.home_by(HomeStarter::Input);
         }
+        self.start_by_inputs(now.risen_since(before));
     }
 
     /// The output signals, right now.
@@ -49,6 +51,11 @@ impl Drive {
             .with(Output::AtLimitNeg, self.inputs.has(Input::LimitNeg))
             .with(Output::BeyondPos, beyond(true))
             .with(Output::BeyondNeg, beyond(false))
+            .with(Output::Segment0, self.segment & 1 != 0)
+            .with(Output::Segment1, self.segment & 2 != 0)
+            .with(Output::Segment2, self.segment & 4 != 0)
+            .with(Output::Segment3, self.segment & 8 != 0)
+            .with(Output::Segment4, self.segment & 16 != 0)
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.

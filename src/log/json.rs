@@ -130,6 +130,11 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         }
         Change::PositionCleared => ("position_cleared", json!({})),
         Change::Stored => ("stored", json!({})),
+        Change::Wear { row, writes, within } => {
+            let row = row.map(|row| &drive.model().map.row(row).id);
+            let within_s = within.map(|within| within.as_secs());
+            ("wear", json!({"row": row, "writes": writes, "within_s": within_s}))
+        }
         Change::FactoryRestored => ("factory_restored", json!({})),
         Change::Unit { from, to } => ("unit_changed", json!({"from": from, "to": to})),
         Change::Mode { from, to } => {
@@ -139,6 +144,16 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Moves { to } => ("moves", json!({"to": to})),
         Change::Runs { mrpm } => ("runs", json!({"rpm": text::rpm(*mrpm)})),
         Change::Jogs { mrpm } => ("jogs", json!({"rpm": text::rpm(*mrpm)})),
+        Change::PositionSegment { number, to } => {
+            ("position_segment", json!({"segment": number, "to": to}))
+        }
+        Change::VelocitySegment { number, mrpm } => {
+            ("velocity_segment", json!({"segment": number, "rpm": text::rpm(*mrpm)}))
+        }
+        Change::ChainStep { from, to, why } => {
+            let why = why::chain_step(*why);
+            ("chain_step", json!({"from": from, "to": to, "why": why}))
+        }
         Change::Stops => ("stops", json!({})),
         Change::Coasts => ("coasts", json!({})),
         Change::Stands { at } => ("stands", json!({"at": at})),
@@ -170,6 +185,9 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         }
         Change::Ignored { action, why } => {
             ("ignored", json!({"action": action.name(), "why": why::ignored(*why)}))
+        }
+        Change::InputIgnored { input, why } => {
+            ("input_ignored", json!({"input": input.name(), "why": why::ignored(*why)}))
         }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();

@@ -143,6 +143,13 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         }
         Change::PositionCleared => "position set to 0".into(),
         Change::Stored => "all parameters stored".into(),
+        Change::Wear { row, writes, within } => {
+            let row = row.map(|row| rows::label(drive.model().map.row(row)));
+            let row = row.unwrap_or_else(|| "all parameters".into());
+            let within = within.map(|within| format!(" within {} s", within.as_secs()));
+            let within = within.unwrap_or_default();
+            format!("wears out its memory: {row} stored {writes} times{within}")
+        }
         Change::FactoryRestored => "all parameters as from the factory".into(),
         Change::Unit { from, to } => {
             format!("answers to unit {to} from now on, no longer to {from}")
@@ -159,6 +166,13 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::Moves { to } => format!("moves to {to}"),
         Change::Runs { mrpm } => format!("runs at {} rpm", rpm(*mrpm)),
         Change::Jogs { mrpm } => format!("jogs at {} rpm", rpm(*mrpm)),
+        Change::PositionSegment { number, to } => format!("position segment {number} to {to}"),
+        Change::VelocitySegment { number, mrpm } => {
+            format!("velocity segment {number} at {} rpm", rpm(*mrpm))
+        }
+        Change::ChainStep { from, to, why } => {
+            format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
+        }
         Change::Stops => "stops".into(),
         Change::Coasts => "runs out, the servo is off".into(),
         Change::Stands { at } => format!("stands at {at}"),
@@ -199,6 +213,9 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         }
         Change::Ignored { action, why } => {
             format!("{} ignored: {}", action.name(), why::ignored(*why))
+        }
+        Change::InputIgnored { input, why } => {
+            format!("input {} ignored: {}", input.name(), why::ignored(*why))
         }
         Change::Terminal { index, signal } => {
             let terminals = drive.model().wiring.input_terminals.as_ref();

@@ -6,7 +6,7 @@ use crate::event::Ignored;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
-use crate::words::{Cause, Detail, Edge, Refusal, Until, Word};
+use crate::words::{Cause, Condition, Detail, Edge, Refusal, Until, Word};
 
 /// `range 0..6000`, `0x1234 is not mapped`.
 pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
@@ -55,6 +55,17 @@ pub fn ignored(why: Ignored) -> &'static str {
         Ignored::Limit => "there is a limit in that direction",
         Ignored::Starter => "the parameter says that something else starts it, or nothing does",
         Ignored::NoMeaning => "a parameter holds a number that stands for nothing",
+        Ignored::NoSegment => "there is no such segment",
+    }
+}
+
+/// Why a chain goes on.
+pub fn chain_step(why: Option<Condition>) -> &'static str {
+    match why {
+        None => "in position",
+        Some(Condition::Delay) => "its time is over",
+        Some(Condition::Step) => "`segment_step` has risen",
+        Some(Condition::Position) => "the position is reached",
     }
 }
 

@@ -125,7 +125,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
 }
 
 /// `text` with its placeholders replaced by `n`: `{n}`, `{n:02}`, `{n:04X}`.
-fn number(text: &str, n: u16) -> String {
+pub(super) fn number(text: &str, n: u16) -> String {
     let mut out = String::new();
     let mut rest = text;
     while let Some((before, tail)) = rest.split_once("{n") {

@@ -21,8 +21,9 @@ pub use load::{Choices, check, load};
 pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use wiring::{
-    Alarm, Axis, Choice, Commands, Counts, Finish, Hold, Homing, InputWords, Limits, Monitor,
-    OutputWords, Reaction, Servo, Shown, Shows, Terminals, Triggers, Wiring,
+    Alarm, Axis, ChainRules, Choice, Commands, Counts, Finish, Hold, Homing, InputWords, Lasts,
+    Limits, Link, Monitor, OutputWords, PerRow, PositionSegment, PositionSegments, Reaction,
+    Segments, Servo, Shown, Shows, Target, Terminals, Triggers, VelocitySegments, Wiring,
 };
 
 /// One drive of one vendor, as data.

@@ -145,7 +145,8 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
             RawApplies::PowerOn => Applies::PowerOn,
         },
         locked_while_enabled: raw.lock == Some(RawLock::Enabled),
-        volatile: raw.volatile,
+        // What is 0 again once it has acted has nothing to keep.
+        volatile: raw.volatile || raw.clears,
         clears: raw.clears,
         order: raw.word_order.map(order),
         name: raw.name.clone(),
@@ -176,6 +177,9 @@ fn reject_keys_without_effect(
         for (key, _) in of_writes.into_iter().filter(|(_, set)| *set) {
             reject(key, "a row that is read only");
         }
+    }
+    if raw.access != RawAccess::R && raw.clears && raw.volatile {
+        reject("volatile", "a row that clears itself");
     }
     if raw.word_order.is_some() && kind.words() == 1 {
         reject("word_order", "a row of one word");

@@ -1,14 +1,22 @@
 //! Wiring, compiled: which row, bit and terminal carries which word.
 
 mod axis;
+mod chain;
 mod compile;
 mod homing;
 mod names;
 mod orders;
 mod quantities;
+mod segment_rows;
+mod segment_signals;
+mod segments;
 mod used;
 
+pub use chain::{ChainRules, Link};
 pub(super) use compile::compile;
+pub use segments::{
+    Lasts, PerRow, PositionSegment, PositionSegments, Segments, Target, VelocitySegments,
+};
 pub(super) use used::check_inert;
 
 use super::RowId;
@@ -207,6 +215,8 @@ pub struct Axis {
     pub coast: Duration,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
+    /// Motions by number.
+    pub segments: Segments,
 }
 
 /// Counts for one revolution.
@@ -222,7 +232,12 @@ impl Default for Axis {
     /// Nothing moves it.
     fn default() -> Self {
         let coast = Duration::from_millis(200);
-        Self { counts_per_rev: Counts::Fixed(1), coast, settings: Vec::new() }
+        Self {
+            counts_per_rev: Counts::Fixed(1),
+            coast,
+            settings: Vec::new(),
+            segments: Segments::default(),
+        }
     }
 }
 

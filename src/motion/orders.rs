@@ -60,11 +60,28 @@ impl Trajectory {
     /// Goes to `speed` and stays there; to the other direction through zero, with `decel` before it
     /// and `accel` after.
     pub fn to_speed(now: Instant, from: State, speed: f64, accel: f64, decel: f64) -> Self {
+        Self::to_speed_with_start(now, from, speed, accel, decel, 0.0)
+    }
+
+    /// The same, for an axis that takes `start_speed`, a magnitude, without a ramp.
+    pub fn to_speed_with_start(
+        now: Instant,
+        from: State,
+        speed: f64,
+        accel: f64,
+        decel: f64,
+        start_speed: f64,
+    ) -> Self {
         let speed = if speed.is_nan() { 0.0 } else { speed.clamp(-TOP_SPEED, TOP_SPEED) };
+        let start_speed = if start_speed > 0.0 { start_speed.min(speed.abs()) } else { 0.0 };
         let (accel, decel) = (slope(accel), slope(decel));
         let mut plan = Plan::new(now, from);
         if from.speed * speed < 0.0 {
-            plan.ramp(0.0, decel);
+            plan.ramp(from.speed.clamp(-start_speed, start_speed), decel);
+            plan.at.speed = 0.0;
+        }
+        if plan.at.speed.abs() < start_speed {
+            plan.at.speed = start_speed.copysign(speed);
         }
         let faster = speed.abs() > plan.at.speed.abs();
         plan.ramp(speed, if faster { accel } else { decel });
@@ -235,6 +252,24 @@ mod tests {
         assert_eq!(states(&of, &[500, 600, 1600]), want);
         assert_eq!(of.end(), None);
         assert!(of.is_moving(Instant::from_millis(500)));
+    }
+
+    #[test]
+    fn a_run_takes_its_start_speed_at_once() {
+        let run = |from: f64, speed: f64, start_speed: f64| {
+            let from = State { position: 0.0, speed: from };
+            let now = Instant::ZERO;
+            Trajectory::to_speed_with_start(now, from, speed, 5000.0, 2000.0, start_speed)
+        };
+        assert_eq!(states(&run(0.0, 1000.0, 200.0), &[0, 160]), [(0.0, 200.0), (96.0, 1000.0)]);
+        // Not above the speed of the run, and of no matter to what is faster already.
+        assert_eq!(states(&run(0.0, -100.0, 200.0), &[0, 100]), [(0.0, -100.0), (-10.0, -100.0)]);
+        assert_eq!(run(300.0, 1000.0, 200.0), run(300.0, 1000.0, 0.0));
+        // Turning round it drops it at once and takes it at once.
+        assert_eq!(
+            states(&run(1000.0, -500.0, 200.0), &[400, 460]),
+            [(240.0, -200.0), (219.0, -500.0)]
+        );
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod ready;
 mod run;
 mod serve;
 mod stop;
+mod store;
 
 pub use clock::Clock;
 pub use diagnostics::{Diagnostics, diagnose};
@@ -19,3 +20,4 @@ pub use library::{FileLibrary, plain};
 pub use logger::{LogFormat, Logger};
 pub use run::{OpenError, RunOptions, run};
 pub use serve::{Frames, Reopen, Served, serve_stream, serve_tty};
+pub use store::Store;

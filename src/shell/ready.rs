@@ -1,5 +1,6 @@
 //! The ready file: one JSON object, there whole or not at all.
 
+use super::store::folder;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
@@ -52,7 +53,7 @@ pub struct Unit {
 /// # Errors
 /// What the file system says.
 pub fn write(path: &Path, ready: &Ready) -> io::Result<()> {
-    let folder = path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder(path);
     // As readable as any other file that a program makes.
     let mode = std::os::unix::fs::PermissionsExt::from_mode(0o644);
     let mut file = tempfile::Builder::new().permissions(mode).tempfile_in(folder)?;

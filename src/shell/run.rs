@@ -5,8 +5,9 @@ use super::library::plain;
 use super::logger::{LogFormat, Logger};
 use super::port::{Listener, Pty, Serial, Tty};
 use super::ready::{self, Endpoint, Ready, Unit};
-use super::serve::{Frames, Reopen, Served, serve_tcp, serve_tty};
+use super::serve::{Frames, Reopen, Served, held, serve_tcp, serve_tty};
 use super::stop::Stop;
+use super::store::Store;
 use crate::bench::{Bench, BenchLine, PortSpec};
 use crate::bus::Bus;
 use crate::serial::{Parity, Settings};
@@ -31,6 +32,8 @@ pub struct RunOptions {
     pub log_file: Option<PathBuf>,
     /// Written when every port is open.
     pub ready_file: Option<PathBuf>,
+    /// Where drives keep what they store.
+    pub store: Option<Store>,
     /// Paths of links are relative to this.
     pub base: PathBuf,
 }
@@ -60,6 +63,21 @@ fn forget(path: &Path) -> io::Result<()> {
     }
 }
 
+/// A file of the run was written, or the run has failed.
+fn written(path: &Path, result: io::Result<()>) -> Result<(), OpenError> {
+    result.map_err(|error| OpenError::File(path.to_owned(), error))
+}
+
+/// Has the state file written, if there is one.
+fn saved(
+    store: Option<&Arc<Mutex<Store>>>,
+    save: fn(&mut Store) -> io::Result<()>,
+) -> Result<(), OpenError> {
+    let Some(mut store) = store.map(|it| held(it)) else { return Ok(()) };
+    let result = save(&mut store);
+    written(store.path(), result)
+}
+
 type Task = Pin<Box<dyn Future<Output = ()>>>;
 
 /// Runs `bench` until a signal ends it.
@@ -70,25 +88,28 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     // Before anybody can learn that the run has begun.
     let mut stop = Stop::listen().map_err(OpenError::Signals)?;
     if let Some(path) = &options.ready_file {
-        forget(path).map_err(|error| OpenError::File(path.clone(), error))?;
+        written(path, forget(path))?;
     }
     let names = bench.lines.len() > 1;
     let logger = Logger::start(options.format, names, options.log_file.as_deref());
     let logger = logger
         .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
     let log = Arc::new(Mutex::new(logger));
+    let store = options.store.map(|store| Arc::new(Mutex::new(store)));
     let clock = Clock::start(options.rate);
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
     for line in &bench.lines {
-        let (task, endpoint) = open(line, clock, &log, &options.base)?;
+        let (task, endpoint) = open(line, clock, &log, store.as_ref(), &options.base)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
+    // Whoever is told that the run is ready may look into it.
+    saved(store.as_ref(), Store::save)?;
     info!("seed {}", options.seed);
     bench.lines.iter().zip(&endpoints).for_each(|(line, endpoint)| introduce(line, endpoint));
     if let Some(path) = &options.ready_file {
         let ready = Ready { seed: options.seed, endpoints };
-        ready::write(path, &ready).map_err(|error| OpenError::File(path.clone(), error))?;
+        written(path, ready::write(path, &ready))?;
     }
     let mut served = tokio::task::JoinSet::new();
     let local = tokio::task::LocalSet::new();
@@ -105,6 +126,7 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     // Ports close here: links are removed, clients see the end.
     served.abort_all();
     local.await;
+    saved(store.as_ref(), Store::finish)?;
     match why {
         Ok(signal) => {
             info!("{signal}: ended");
@@ -118,12 +140,17 @@ fn open(
     line: &BenchLine,
     clock: Clock,
     log: &Arc<Mutex<Logger>>,
+    store: Option<&Arc<Mutex<Store>>>,
     base: &Path,
 ) -> Result<(Task, Endpoint), OpenError> {
     let (bus, name) = (line.bus(), line.name.clone());
     let (wire, settings) = (line.wire, line.wire.mode.settings);
     let mut endpoint = endpoint(line, &bus);
-    let served = |frames| Served { name, bus, clock, frames, log: Some(log.clone()) };
+    if let Some(store) = store {
+        held(store).take(&name, &bus);
+    }
+    let (log, store) = (Some(log.clone()), store.cloned());
+    let served = |frames| Served { name, bus, clock, frames, log, store };
     let refused = |error: io::Error| OpenError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {

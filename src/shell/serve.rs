@@ -10,13 +10,14 @@ pub use tty::{Reopen, serve_tty};
 
 use super::clock::Clock;
 use super::logger::Logger;
+use super::store::Store;
 use crate::bench::WireSpec;
 use crate::bus::{Bus, LinkId, Output};
 use crate::line::Framing;
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
 use crate::wire::Frame;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A line as a task serves it.
 #[derive(Debug)]
@@ -31,6 +32,8 @@ pub struct Served {
     pub frames: Frames,
     /// The log, shared by all lines; none in a test.
     pub log: Option<Arc<Mutex<Logger>>>,
+    /// Where drives keep what they store, shared by all lines; else that ends with them.
+    pub store: Option<Arc<Mutex<Store>>>,
 }
 
 /// How frames are told apart on a port.
@@ -50,10 +53,16 @@ enum Send {
 }
 
 impl Served {
-    /// The next thing for the port to do; events go to the log on the way.
+    /// The next thing for the port to do. On the way events go to the log, and what drives have stored goes to the
+    /// disk.
     fn next_send(&mut self) -> Option<Send> {
         loop {
             match self.bus.poll_output()? {
+                Output::Keep(drive) => {
+                    if let Some(store) = &self.store {
+                        held(store).keep(&self.name, &self.bus, drive);
+                    }
+                }
                 Output::Transmit { link, frame } => return Some(Send::Frame(link, frame)),
                 Output::Close(link) => return Some(Send::Close(link)),
                 Output::Moved(mode) => {
@@ -62,9 +71,7 @@ impl Served {
                 }
                 Output::Event(event) => {
                     if let Some(log) = &self.log {
-                        log.lock()
-                            .unwrap_or_else(PoisonError::into_inner)
-                            .log(&event, &self.name, &self.bus);
+                        held(log).log(&event, &self.name, &self.bus);
                     }
                 }
             }
@@ -111,4 +118,9 @@ impl Served {
             _ => now,
         }
     }
+}
+
+/// What lines share. A line that went down must not take the others along.
+pub(super) fn held<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

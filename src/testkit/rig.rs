@@ -1,7 +1,8 @@
 //! One line with drives and a clock that moves only when told to.
 
 use crate::bench::{
-    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, WireSpec,
+    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, Saved, StateFile,
+    WireSpec,
 };
 use crate::bus::{Bus, Command, CommandError, LinkId, Output};
 use crate::drive::Drive;
@@ -73,6 +74,28 @@ impl Rig {
     #[must_use]
     pub fn with_framing(self, framing: Framing) -> Self {
         Self::framed(self.line, framing)
+    }
+
+    /// The same line switched on anew, with what its drives or those of another rig have kept: the text of
+    /// [`state`](Self::state), or of a state file. Start values win over it, and on a line of a bench so do its
+    /// speed and format.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, or with these drives for it.
+    pub fn with_state(mut self, text: &str) -> Result<Self, Vec<Problem>> {
+        let mut saved = Saved::read(text)?;
+        for (i, device) in self.line.devices.iter_mut().enumerate() {
+            saved.give(&self.line.name, i, device);
+        }
+        saved.finish()?;
+        Ok(Self::line(self.line))
+    }
+
+    /// What the drives keep over power-off, as the text of a state file.
+    pub fn state(&self) -> String {
+        let mut state = StateFile::default();
+        state.keep_all(&self.line.name, &self.bus);
+        state.text()
     }
 
     fn framed(line: BenchLine, framing: Framing) -> Self {
@@ -196,7 +219,7 @@ impl Rig {
                     self.line.wire.mode = mode;
                     self.bus.reframe_all(self.line.wire.framing(1.0));
                 }
-                Output::Close(_) => {}
+                Output::Keep(_) | Output::Close(_) => {}
             }
         }
         sent

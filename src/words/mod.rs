@@ -6,6 +6,7 @@
 mod action;
 mod alarm;
 mod cause;
+mod condition;
 mod homing;
 mod quantity;
 mod refusal;
@@ -15,6 +16,7 @@ mod signal;
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
 pub use cause::Cause;
+pub use condition::Condition;
 pub use homing::{
     Edge, HomeEnd, HomeStarter, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS, Method,
     OriginPosition, OriginStop, Pace, SoftLimitRule, Step, Steps, Then, Until,

@@ -6,14 +6,19 @@ use crate::units::Dimension;
 words! {
     /// A number that is read when a motion starts and holds until the next one.
     Setting {
-        RunSpeed "run.speed" "speed of `run_start`; its sign is the direction",
+        RunSpeed "run.speed" "speed of `run_start` and `run`; its sign is the direction",
+        RunStartSpeed "run.start_speed" "speed that a run takes at once; a sign does not count",
         RunAccel "run.accel" "how a run speeds up",
         RunDecel "run.decel" "how a run slows down",
         JogSpeed "jog.speed" "speed of `jog_pos` and `jog_neg`; a sign does not count",
         JogAccel "jog.accel" "how a jog speeds up",
         JogDecel "jog.decel" "how a jog slows down",
+        InchSpeed "inch.speed" "speed of `inch_pos` and `inch_neg`; a sign does not count",
+        InchAccel "inch.accel" "how an inching axis speeds up",
+        InchDecel "inch.decel" "how an inching axis slows down",
         MoveTarget "move.target" "how far `move_start` goes, or where to",
         MoveSpeed "move.speed" "speed of `move_start`; a sign does not count",
+        MoveAbsolute "move.absolute" "with input `move_start`: `move.target` is a position while this is not 0, else a way",
         MoveStartSpeed "move.start_speed" "speed that a move takes at once and drops at once",
         MoveAccel "move.accel" "how a move speeds up",
         MoveDecel "move.decel" "how a move slows down",
@@ -33,7 +38,7 @@ words! {
 impl Setting {
     /// What it may measure; the row's unit must fit one of them.
     ///
-    /// A ramp is an acceleration, or the time from standstill (a move: from its start speed) to the speed.
+    /// A ramp is an acceleration, or the time from standstill (a move or run: from its start speed) to the speed.
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
             Self::MoveTarget
@@ -43,8 +48,11 @@ impl Setting {
             | Self::SoftLimitPos
             | Self::SoftLimitNeg
             | Self::Deviation => &[Dimension::Position],
+            Self::MoveAbsolute => &[Dimension::None],
             Self::RunSpeed
+            | Self::RunStartSpeed
             | Self::JogSpeed
+            | Self::InchSpeed
             | Self::MoveSpeed
             | Self::MoveStartSpeed
             | Self::HomeFast
@@ -54,6 +62,8 @@ impl Setting {
             | Self::RunDecel
             | Self::JogAccel
             | Self::JogDecel
+            | Self::InchAccel
+            | Self::InchDecel
             | Self::MoveAccel
             | Self::MoveDecel
             | Self::HomeAccel => &[Dimension::Acceleration, Dimension::Time],

@@ -17,6 +17,18 @@ words! {
         LimitPos "limit_pos" "level: the positive limit; no motion goes on in the positive direction",
         LimitNeg "limit_neg" "level: the negative limit; no motion goes on in the negative direction",
         HomeStart "home_start" "rising edge: look for the origin",
+        InchPos "inch_pos" "level: the axis goes at `inch.speed` while active, a jog with settings of its own; with `inch_neg` at the same time it stops",
+        InchNeg "inch_neg" "level: the same in the negative direction",
+        Run "run" "level: the axis goes at `run.speed` while active",
+        MoveStart "move_start" "rising edge: go `move.target` counts on, or with `move.absolute` to that position; ignored while the axis moves, but a run by `run_start` goes over into a move from where it is",
+        SegmentStart "segment_start" "rising edge: start the position segment that `select_0` to `select_3` select; ignored while the axis moves, but a velocity segment that an edge started goes over into a move from where it is",
+        SegmentStep "segment_step" "rising edge: condition `step` of a chain",
+        SegmentRun "segment_run" "go at the velocity segment that the selection says when this rises; while active, or where `trigger` is `edge`, until stopped",
+        SegmentReverse "segment_reverse" "level: velocity segments run in the opposite direction",
+        Select0 "select_0" "bit 0 of the selection: the number of a segment, counted from the first",
+        Select1 "select_1" "bit 1 of the selection",
+        Select2 "select_2" "bit 2 of the selection",
+        Select3 "select_3" "bit 3 of the selection",
     }
 }
 
@@ -36,6 +48,11 @@ words! {
         AtLimitNeg "limit_neg" "signal `limit_neg` is active",
         BeyondPos "beyond_soft_pos" "the position is more than `limit.soft_pos`, and soft limits are in force",
         BeyondNeg "beyond_soft_neg" "the position is less than `limit.soft_neg`, and soft limits are in force",
+        Segment0 "segment_0" "bit 0 of `segment.running`",
+        Segment1 "segment_1" "bit 1 of `segment.running`",
+        Segment2 "segment_2" "bit 2 of `segment.running`",
+        Segment3 "segment_3" "bit 3 of `segment.running`",
+        Segment4 "segment_4" "bit 4 of `segment.running`",
     }
 }
 

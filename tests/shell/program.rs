@@ -68,6 +68,12 @@ impl Program {
         (code, stdout, stderr)
     }
 
+    /// Ends the run as a power failure does.
+    pub fn kill(mut self) {
+        self.child.kill().expect("killed");
+        self.child.wait().expect("ended");
+    }
+
     /// Waits until stderr has said `text`. Reads it in a thread of its own from then on.
     pub fn wait_until_said(&mut self, said: &Said, text: &str) {
         let running = &mut self.child;

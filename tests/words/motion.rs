@@ -5,7 +5,7 @@ use drivemu::bench::DeviceSpec;
 use drivemu::model::Row;
 use drivemu::motion::{Machine, Zone};
 use drivemu::testkit::Rig;
-use drivemu::words::{Action, Modifier, Output, Quantity, Setting, Word};
+use drivemu::words::{Action, Input, Modifier, Output, Quantity, Setting, Word};
 use std::time::Duration;
 
 #[test]
@@ -46,18 +46,23 @@ fn each_modifier_counts() {
 /// row with the setting. With `changed`, that row holds more.
 fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String, i64)) {
     let machine = if is_free(setting) { Machine::default() } else { MACHINE };
-    let mut spec = DeviceSpec { machine, ..DeviceSpec::default() };
+    let mut spec = DeviceSpec { machine, position: 5, ..DeviceSpec::default() };
     spec.set = ordinary(setting).iter().map(|(row, value)| ((*row).into(), *value)).collect();
     spec.set.extend(changed);
     let mut rig = acme(&spec);
     let model = rig.drive().model().clone();
     let id = model.wiring.axis.setting(setting).expect("every setting is wired");
     let row: &Row = model.map.row(id);
-    let more = (row.id.clone(), rig.drive().bank().value(&model, id) * 2 + 7);
+    let most = row.spans.last().expect("a range").1;
+    let more = (row.id.clone(), (rig.drive().bank().value(&model, id) * 2 + 7).min(most));
     give(&mut rig, Action::Enable);
     let mut places = Vec::new();
     match setting.name().split('.').next() {
         Some("run") => give(&mut rig, Action::RunStart),
+        Some("move") if setting == Setting::MoveAbsolute => {
+            super::by_bit(&mut rig, Input::MoveStart, true);
+        }
+        Some("inch") => super::by_bit(&mut rig, Input::InchPos, true),
         Some("move") => give(&mut rig, Action::MoveStart),
         Some("home") => give(&mut rig, Action::HomeStart),
         Some("limit") => give(&mut rig, Action::RunStart),
@@ -65,6 +70,7 @@ fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String
     }
     look(&mut rig, &mut places, 200);
     jog(&mut rig, false);
+    super::by_bit(&mut rig, Input::InchPos, false);
     if setting.name().starts_with("run") {
         give(&mut rig, Action::Stop);
     }
@@ -73,7 +79,7 @@ fn trace(setting: Setting, changed: Option<(String, i64)>) -> (Vec<i64>, (String
 }
 
 fn jog(rig: &mut Rig, on: bool) {
-    super::by_bit(rig, drivemu::words::Input::JogPos, on);
+    super::by_bit(rig, Input::JogPos, on);
 }
 
 fn look(rig: &mut Rig, places: &mut Vec<i64>, count: usize) {
@@ -128,15 +134,7 @@ fn the_log_tells_of_motions() {
     rig.advance(second);
     give(&mut rig, Action::Release);
     rig.advance(second);
-    let fields = ["event", "to", "rpm", "at", "action", "why", "text"];
-    let told = rig.events().iter().map(|event| {
-        let object = drivemu::log::json::object(event, "line", rig.bus());
-        let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
-        fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
-    });
-    let motions = ["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"];
-    let told: Vec<String> =
-        told.filter(|it| motions.iter().any(|kind| it.starts_with(kind))).collect();
+    let told = told(&rig, &["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"]);
     let want = [
         "ignored | run_start | the servo is off | unit 5 run_start ignored: the servo is off",
         "moves | 200000 | unit 5 moves to 200000",
@@ -150,4 +148,16 @@ fn the_log_tells_of_motions() {
         "stands | 462144 | unit 5 stands at 462144",
     ];
     assert_eq!(told, want);
+}
+
+/// What a program reads of the events of these kinds, and that people read the same.
+#[cfg(feature = "cli")]
+pub(super) fn told(rig: &Rig, kinds: &[&str]) -> Vec<String> {
+    let fields = ["event", "segment", "from", "to", "rpm", "at", "action", "input", "why", "text"];
+    let told = rig.events().iter().map(|event| {
+        let object = drivemu::log::json::object(event, "line", rig.bus());
+        let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
+        fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
+    });
+    told.filter(|it| kinds.iter().any(|kind| it.starts_with(kind))).collect()
 }

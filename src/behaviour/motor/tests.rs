@@ -19,7 +19,7 @@ enum Order {
 }
 
 fn ramp(speed: f64) -> Ramp {
-    Ramp { speed, accel: HOW.accel, decel: HOW.decel }
+    Ramp { speed, accel: HOW.accel, decel: HOW.decel, start_speed: 0.0 }
 }
 
 /// Orders with the milliseconds before each; where `gentle`, none that changes the speed at once.

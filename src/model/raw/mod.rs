@@ -6,11 +6,13 @@
 mod homing;
 mod line;
 mod row;
+mod segments;
 mod wiring;
 
 pub use homing::*;
 pub use line::*;
 pub use row::*;
+pub use segments::*;
 pub use wiring::*;
 
 use serde::Deserialize;
@@ -160,6 +162,7 @@ pub const KEYS: &[&str] = &[
     "about",
     "access",
     "alarms",
+    "all",
     "applies",
     "assumed",
     "at",
@@ -169,12 +172,14 @@ pub const KEYS: &[&str] = &[
     "baud",
     "bits",
     "by",
+    "chain",
     "choices",
     "clears",
     "coast",
     "code",
     "codes",
     "commands",
+    "conditions",
     "counts_per_rev",
     "crc_error",
     "default",
@@ -193,6 +198,7 @@ pub const KEYS: &[&str] = &[
     "index",
     "init",
     "inputs",
+    "kind",
     "length_check",
     "limit",
     "limit_source",
@@ -211,6 +217,7 @@ pub const KEYS: &[&str] = &[
     "monitor",
     "n",
     "name",
+    "next",
     "no_steps",
     "normally_closed",
     "note",
@@ -231,7 +238,9 @@ pub const KEYS: &[&str] = &[
     "repeats",
     "resettable",
     "rev",
+    "rule",
     "see",
+    "segments",
     "servo",
     "shows",
     "signals",
@@ -247,13 +256,18 @@ pub const KEYS: &[&str] = &[
     "switches",
     "terminals",
     "then",
+    "through",
     "time_factor",
     "title",
     "to",
+    "trigger",
     "triggers",
     "type",
     "unit",
+    "units",
+    "value",
     "values",
+    "velocity",
     "vendor",
     "volatile",
     "why",

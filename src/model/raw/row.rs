@@ -33,7 +33,7 @@ pub struct RawRow {
     /// Never kept over power-off, whatever the window or a save command says.
     #[serde(default)]
     pub volatile: bool,
-    /// The drive sets it back to 0 by itself once it has acted on a write.
+    /// The drive sets it back to 0 by itself once it has acted on a write; never kept over power-off either.
     #[serde(default)]
     pub clears: bool,
     /// Word order of this pair, where it does not follow the line's.

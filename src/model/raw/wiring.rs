@@ -1,5 +1,6 @@
 //! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
 
+use super::RawSegments;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -165,6 +166,9 @@ pub struct RawAxis {
     /// How long the axis runs out when its power stage goes off while it moves, from whatever speed
     /// (`200ms`, which is the default); `0s` stands at once.
     pub coast: Option<String>,
+    /// Motions by number, which signals select and start.
+    #[serde(default)]
+    pub segments: RawSegments,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }

@@ -3,7 +3,7 @@
 
 use super::Counts;
 use super::compile::Wirer;
-use crate::model::raw::{RawAxis, RawCounts};
+use crate::model::raw::{RawAxis, RawCounts, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::Dimension;
 use crate::words::{
@@ -19,13 +19,13 @@ struct Kind {
     takes: &'static [Setting],
 }
 
-const KINDS: [Kind; 4] = [
+const KINDS: [Kind; 7] = [
     Kind {
         name: "run",
-        inputs: &[],
+        inputs: &[Input::Run],
         action: Some(Action::RunStart),
         needs: &[Setting::RunSpeed],
-        takes: &[Setting::RunAccel, Setting::RunDecel],
+        takes: &[Setting::RunStartSpeed, Setting::RunAccel, Setting::RunDecel],
     },
     Kind {
         name: "jog",
@@ -35,8 +35,15 @@ const KINDS: [Kind; 4] = [
         takes: &[Setting::JogAccel, Setting::JogDecel],
     },
     Kind {
+        name: "jog by `inch_pos`",
+        inputs: &[Input::InchPos, Input::InchNeg],
+        action: None,
+        needs: &[Setting::InchSpeed],
+        takes: &[Setting::InchAccel, Setting::InchDecel],
+    },
+    Kind {
         name: "move",
-        inputs: &[],
+        inputs: &[Input::MoveStart],
         action: Some(Action::MoveStart),
         needs: &[Setting::MoveTarget, Setting::MoveSpeed],
         takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
@@ -55,6 +62,20 @@ const KINDS: [Kind; 4] = [
             Setting::HomeCollision,
             Setting::HomeTimeLimit,
         ],
+    },
+    Kind {
+        name: "move by input",
+        inputs: &[Input::MoveStart],
+        action: None,
+        needs: &[],
+        takes: &[Setting::MoveAbsolute],
+    },
+    Kind {
+        name: "segment",
+        inputs: &[Input::SegmentStart, Input::SegmentRun],
+        action: None,
+        needs: &[],
+        takes: &[],
     },
 ];
 
@@ -84,6 +105,9 @@ impl Wirer<'_> {
             self.signals_without_motion(&inputs, &actions);
         }
         self.homing_fits(&inputs, &actions);
+        let none = RawSegments::default();
+        let segments = raw.map_or(&none, |raw| &raw.segments);
+        self.segments(segments, &path.key("segments"), &inputs);
         let Some(raw) = raw else { return };
         if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
             self.wiring.axis.counts_per_rev = counts;
@@ -223,7 +247,7 @@ impl Wirer<'_> {
         commands.chain(triggers).collect()
     }
 
-    fn is_shown(&self, output: Output) -> bool {
+    pub(super) fn is_shown(&self, output: Output) -> bool {
         let wiring = &self.wiring;
         let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
         let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);

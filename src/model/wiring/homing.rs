@@ -27,7 +27,7 @@ impl Wirer<'_> {
         let methods: BTreeMap<i64, Method> = raw.methods.iter().map(method).collect();
         let row = raw.method.as_ref().and_then(|id| self.row(id, &path.key("method")));
         match row {
-            Some(row) => self.numbers(row, raw, &path),
+            Some(row) => self.numbered(row, raw, &path),
             None if raw.method.is_none() && methods.len() != 1 => {
                 let what = "without a row that chooses there is one method";
                 self.problems.push(Problem::key(methods_path, what).advise("add `method: ROW`"));
@@ -96,7 +96,7 @@ impl Wirer<'_> {
     }
 
     /// Each number that the row can hold has steps, or is said to have none.
-    fn numbers(&mut self, row: crate::model::RowId, raw: &RawHoming, path: &Path) {
+    fn numbered(&mut self, row: crate::model::RowId, raw: &RawHoming, path: &Path) {
         let row = self.rows.map.row(row);
         for number in raw.methods.keys().filter(|it| !row.admits(**it)) {
             let what = format!("{} never holds {number}", row.id);

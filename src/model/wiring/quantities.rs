@@ -41,7 +41,7 @@ impl Wirer<'_> {
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
     }
 
-    fn dimension(&mut self, row: RowId, name: &str, want: &[Dimension], path: &Path) {
+    pub(super) fn dimension(&mut self, row: RowId, name: &str, want: &[Dimension], path: &Path) {
         let row = self.rows.map.row(row);
         if want.contains(&row.unit.dimension) {
             return;

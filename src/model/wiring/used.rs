@@ -59,6 +59,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
+    wiring.axis.segments.rows().for_each(&mut mark);
     for (i, shows) in wiring.shows.iter().enumerate() {
         if shows.is_some() || wiring.reactions[i] != Reaction::None {
             mark(RowId(i as u16));

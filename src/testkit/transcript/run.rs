@@ -36,7 +36,7 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
     }
     let wire = WireSpec::of(&devices, script.settings, script.ascii, script.strict);
     for (device, drive) in devices.iter_mut().zip(&script.drives) {
-        let matched = match_line(device, wire.mode);
+        let matched = match_line(device, wire.mode, true);
         matched.map_err(|what| Failure { line: drive.line, what })?;
     }
     Ok(BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices })

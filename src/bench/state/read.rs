@@ -1,0 +1,163 @@
+//! From the text of a state file to the memories of drives, or to everything that is wrong with it.
+
+use super::{FORMAT, name};
+use crate::bank::{Kept, KeptRow};
+use crate::bench::Device;
+use crate::model::Model;
+use crate::problem::{Path, Problem, section, suggest};
+use serde::Deserialize;
+use serde_yaml::Value;
+use std::collections::BTreeMap;
+
+/// What an earlier run has left: each memory is given to the drive that it belongs to.
+///
+/// The default is that of a first run, which finds nothing.
+#[derive(Debug, Default)]
+pub struct Saved {
+    /// The sections that nobody has taken yet.
+    left: Vec<Section>,
+    /// The drives that have asked, each with its model.
+    asked: Vec<String>,
+    problems: Vec<Problem>,
+}
+
+#[derive(Debug)]
+struct Section {
+    name: String,
+    path: Path,
+    value: Value,
+}
+
+#[derive(Deserialize)]
+struct RawFile {
+    format: u32,
+    drives: Value,
+}
+
+#[derive(Deserialize)]
+struct RawDrive {
+    model: String,
+    #[serde(default)]
+    saves: u32,
+    rows: BTreeMap<String, RawRow>,
+}
+
+#[derive(Deserialize)]
+struct RawRow {
+    value: i64,
+    #[serde(default)]
+    writes: u32,
+}
+
+/// Every key of the format, for advice on unknown ones.
+const KEYS: &[&str] = &["drives", "format", "model", "rows", "saves", "value", "writes"];
+
+impl Saved {
+    /// Reads `text` as far as that goes without knowing the drives.
+    ///
+    /// # Errors
+    /// Everything that is wrong so far.
+    pub fn read(text: &str) -> Result<Self, Vec<Problem>> {
+        let (file, mut problems) = section::tree(text)?;
+        if let Some(problem) = of_the_future(&file) {
+            return Err(vec![problem]);
+        }
+        let root = Path::root();
+        let raw: Option<RawFile> = section::read(&file, &root, KEYS, &mut problems);
+        let path = root.key("drives");
+        let drives = raw.as_ref().map(|raw| &raw.drives);
+        let left = section::entries(drives, &path, &mut problems).into_iter();
+        let left = left.map(|(name, path, value)| Section { name, path, value: value.clone() });
+        let left = left.collect();
+        if raw.is_some_and(|raw| raw.format != FORMAT) {
+            problems.push(other_format(&file));
+        }
+        match problems.is_empty() {
+            true => Ok(Self { left, ..Self::default() }),
+            false => Err(problems),
+        }
+    }
+
+    /// Gives the stations of `device`, the `index`-th of `line` from 0, what they have kept. What is wrong with it
+    /// is told by [`finish`](Self::finish).
+    pub fn give(&mut self, line: &str, index: usize, device: &mut Device) {
+        for setup in &mut device.setups {
+            let name = name(line, index, &device.model.stations[setup.station]);
+            if let Some(i) = self.left.iter().position(|section| section.name == name) {
+                let section = self.left.remove(i);
+                setup.kept = self.kept(&section, &device.model).unwrap_or_default();
+            }
+            self.asked.push(format!("{name} ({})", device.model.name));
+        }
+    }
+
+    /// Makes sure that every memory has found its drive.
+    ///
+    /// # Errors
+    /// Everything that is wrong; then no drive may be switched on with what it was given.
+    pub fn finish(mut self) -> Result<(), Vec<Problem>> {
+        for section in &self.left {
+            let model = section.value.get("model").and_then(Value::as_str).unwrap_or("no model");
+            let what = format!("this run has no drive {} ({model})", section.name);
+            let advice = format!("it has {}", self.asked.join(", "));
+            self.problems.push(Problem::key(section.path.clone(), what).advise(advice));
+        }
+        match self.problems.is_empty() {
+            true => Ok(()),
+            false => Err(self.problems),
+        }
+    }
+
+    fn kept(&mut self, section: &Section, model: &Model) -> Option<Kept> {
+        let Section { name, path, value } = section;
+        let raw: RawDrive = section::read(value, path, KEYS, &mut self.problems)?;
+        if raw.model != model.name {
+            let (got, want) = (&raw.model, &model.name);
+            let what = format!("{name} is {got} in this file and {want} in this run");
+            let problem = Problem::value(path.key("model"), what);
+            self.problems.push(problem.advise("use another file for this run"));
+            return None;
+        }
+        let path = path.key("rows");
+        let rows = raw.rows.iter().filter_map(|(id, raw)| self.row(id, raw, model, &path.key(id)));
+        let mut rows: Vec<_> = rows.collect();
+        rows.sort_by_key(|it| it.row);
+        Some(Kept { rows, saves: raw.saves })
+    }
+
+    fn row(&mut self, id: &str, raw: &RawRow, model: &Model, path: &Path) -> Option<KeptRow> {
+        let Some((row, of_map)) = model.map.rows().find(|(_, row)| row.id == id) else {
+            let ids = model.map.rows().map(|(_, row)| row.id.as_str());
+            let advice = suggest::did_you_mean(id, ids);
+            let what = format!("{} has no register `{id}`", model.name);
+            self.problems.push(Problem::key(path.clone(), what).advise_if(advice));
+            return None;
+        };
+        let RawRow { value, writes } = *raw;
+        if of_map.volatile || model.wiring.shows(row).is_some() {
+            let what = format!("{} is not kept over power-off", of_map.label());
+            self.problems.push(Problem::key(path.clone(), what).advise("leave it out"));
+            return None;
+        }
+        if !of_map.admits(value) {
+            let (label, range) = (of_map.label(), of_map.range_text());
+            let what = format!("{label} takes {range}, not {value}");
+            self.problems.push(Problem::value(path.key("value"), what));
+            return None;
+        }
+        Some(KeptRow { row, raw: of_map.kind.raw(value), writes })
+    }
+}
+
+/// A file of a later format: all else that is odd about it is news, not mistakes.
+fn of_the_future(file: &Value) -> Option<Problem> {
+    let format = file.get("format")?.as_u64()?;
+    (format > FORMAT.into())
+        .then(|| other_format(file).advise("a later version has written it: use that one"))
+}
+
+fn other_format(file: &Value) -> Problem {
+    let format = file.get("format").and_then(Value::as_u64).unwrap_or_default();
+    let what = format!("this program reads format {FORMAT}, not {format}");
+    Problem::value(Path::root().key("format"), what)
+}

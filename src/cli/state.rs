@@ -1,0 +1,45 @@
+//! `--state`: what an earlier run has left, and what to say if that is not for this one.
+
+use super::Failure;
+use drivemu::bench::Saved;
+use drivemu::problem::Problem;
+use drivemu::problem::render::render;
+use drivemu::shell::{Store, plain};
+use std::path::Path;
+
+/// A state file as it was found. Without one it is that of a first run.
+#[derive(Debug, Default)]
+pub struct State {
+    /// What is in it.
+    pub saved: Saved,
+    file: String,
+    text: String,
+}
+
+impl State {
+    /// Takes the file at `path` for this run.
+    pub fn open(path: &Path) -> Result<(Store, Self), Failure> {
+        let file = path.display().to_string();
+        let (store, text) = Store::open(path)
+            .map_err(|error| Failure::invalid(format!("can't use {file}: {}", plain(&error))))?;
+        let mut state = Self { file, ..Self::default() };
+        if let Some(text) = text {
+            state.text = text;
+            state.saved = Saved::read(&state.text).map_err(|problems| state.refused(&problems))?;
+        }
+        Ok((store, state))
+    }
+
+    /// Makes sure that everything in it has found its drive.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        let saved = std::mem::take(&mut self.saved);
+        saved.finish().map_err(|problems| self.refused(&problems))
+    }
+
+    fn refused(&self, problems: &[Problem]) -> Failure {
+        let Self { file, text, .. } = self;
+        let told = render(problems, file, text);
+        let advice = format!("{file} is as it was: mend it, move it away, or give another --state");
+        Failure::invalid(format!("{told}{advice}"))
+    }
+}

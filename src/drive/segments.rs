@@ -1,0 +1,168 @@
+//! Moves and runs that rising edges start, by number and in chains.
+
+use super::Drive;
+use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
+use crate::event::{Change, Ignored};
+use crate::model::{ChainRules, Lasts, Link, Target};
+use crate::time::Duration;
+use crate::words::{Condition, Input, Inputs, RowId, Setting};
+
+impl Drive {
+    /// Starts what the edges in `risen` ask for, in the order of the catalogue.
+    pub(super) fn start_by_inputs(&mut self, risen: Inputs) {
+        let starts = [Input::MoveStart, Input::SegmentStart, Input::SegmentStep, Input::SegmentRun];
+        for input in starts.into_iter().filter(|it| risen.has(*it)) {
+            let started = match input {
+                Input::MoveStart => self.start_move(),
+                Input::SegmentStart => self.start_position_segment(),
+                Input::SegmentStep => self.step_chain(),
+                _ => self.start_velocity_segment(),
+            };
+            if let Err(why) = started {
+                self.changes.push_back(Change::InputIgnored { input, why });
+            }
+            self.settle();
+        }
+    }
+
+    /// The number that is selected, where the first is `first`.
+    pub(super) fn selected(&self, first: u16) -> u16 {
+        let selects = [Input::Select0, Input::Select1, Input::Select2, Input::Select3];
+        let bit = |(bit, input)| u16::from(self.inputs.has(input)) << bit;
+        selects.into_iter().enumerate().map(bit).fold(first, u16::saturating_add)
+    }
+
+    /// The position segment that comes next.
+    pub(super) fn next_segment(&self) -> u16 {
+        let Some(segments) = &self.model.wiring.axis.segments.position else { return 0 };
+        let link = segments.get(self.segment).and_then(|it| it.link.as_ref());
+        match link.filter(|_| self.chain.is_under_way()) {
+            Some(link) => {
+                u16::try_from(self.bank.value(&self.model, link.next)).unwrap_or(u16::MAX)
+            }
+            None => self.selected(segments.first),
+        }
+    }
+
+    /// Lets go of what is over: a chain that something broke off, a run by an edge that has ended. Where
+    /// the axis has arrived, the chain is told.
+    pub(super) fn settle_segments(&mut self, free: bool) {
+        let phase = self.motor.phase();
+        let arrived = self.motor.is_in_position();
+        if !(free && (arrived || phase == Phase::Moving)) {
+            self.chain.end();
+        } else if arrived {
+            self.chain.arrive(self.now);
+        }
+        if !matches!(phase, Phase::Jogging { .. }) {
+            self.velocity = self.velocity.filter(|it| !it.by_edge);
+        }
+    }
+
+    /// Goes on with the chain, if it is time to.
+    pub(super) fn advance_chain(&mut self) {
+        let Some(why) = self.chain.due(self.now) else { return };
+        let (from, to) = (self.segment, self.next_segment());
+        if self.target_of(to).is_err() {
+            return self.chain.end();
+        }
+        self.changes.push_back(Change::ChainStep { from, to, why });
+        // The motion under way, if there is one, is that of the segment which gives way.
+        match self.move_by_segment(to, true) {
+            Ok(()) => self.settle(),
+            Err(_) => self.chain.end(),
+        }
+    }
+
+    fn start_move(&mut self) -> Result<(), Ignored> {
+        let model = self.model.clone();
+        let interrupt = self.motor.phase() == Phase::Running;
+        let absolute = self.settings(&model.wiring.axis.settings).is_set(Setting::MoveAbsolute);
+        self.go_to(&model.wiring.axis.settings, absolute && !interrupt, interrupt, None)
+    }
+
+    fn start_position_segment(&mut self) -> Result<(), Ignored> {
+        let segments = self.model.wiring.axis.segments.position.as_ref();
+        let first = segments.map_or(0, |it| it.first);
+        self.move_by_segment(self.selected(first), false)
+    }
+
+    /// Starts position segment `number`. In a chain it takes the place of the segment under way; otherwise
+    /// of a run by an edge, from where that is.
+    fn move_by_segment(&mut self, number: u16, chained: bool) -> Result<(), Ignored> {
+        let model = self.model.clone();
+        let segments = model.wiring.axis.segments.position.as_ref().ok_or(Ignored::NoSegment)?;
+        let segment = segments.get(number).ok_or(Ignored::NoSegment)?;
+        let running = self.velocity.is_some_and(|it| it.by_edge);
+        let absolute = self.target_of(number)? == Target::Absolute && !running;
+        self.motor.may_start(chained || running)?;
+        self.segment = number;
+        self.go_to(&segment.settings, absolute, chained || running, Some(number))?;
+        if let (Some(rules), Some(link)) = (&segments.chain, &segment.link) {
+            self.chain.begin(self.now, self.chain_rule(rules, link));
+        }
+        Ok(())
+    }
+
+    /// What the target of position segment `number` is, if there is such a segment and it is not empty.
+    fn target_of(&self, number: u16) -> Result<Target, Ignored> {
+        let segments = self.model.wiring.axis.segments.position.as_ref();
+        let segment = segments.and_then(|it| it.get(number)).ok_or(Ignored::NoSegment)?;
+        let target = segment.kind.get(|row| self.bank.value(&self.model, row));
+        target.ok_or(Ignored::NoSegment)
+    }
+
+    fn step_chain(&mut self) -> Result<(), Ignored> {
+        self.chain.step(self.now);
+        self.advance_chain();
+        Ok(())
+    }
+
+    /// By level it needs no start: it has been wanted since the level came.
+    fn start_velocity_segment(&mut self) -> Result<(), Ignored> {
+        if self.velocity_lasts() == Some(Lasts::Edge) {
+            self.motor.may_start(false)?;
+            self.velocity = self.selected_velocity(true);
+        }
+        match self.velocity {
+            None => Err(Ignored::NoSegment),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// Goes where `rows` say; whatever chain there was is over.
+    pub(super) fn go_to(
+        &mut self,
+        rows: &[(Setting, RowId)],
+        absolute: bool,
+        interrupt: bool,
+        segment: Option<u16>,
+    ) -> Result<(), Ignored> {
+        let (now, zero) = (self.now, self.zero);
+        let (by, how) = self.settings(rows).next_move();
+        let target = |here: i64| (if absolute { zero } else { here }).saturating_add(by);
+        self.motor.start_move(now, target, how, interrupt)?;
+        self.tell_stages(segment);
+        self.chain.end();
+        Ok(())
+    }
+
+    /// What the rows of a segment say about when it gives way.
+    fn chain_rule(&self, rules: &ChainRules, link: &Link) -> Rule {
+        let raw = self.bank.raw(link.rule);
+        let is_set = |bit: Option<u8>| bit.is_some_and(|bit| raw >> bit & 1 != 0);
+        let mut waits = [None; MOST_WAITS];
+        for (slot, (i, condition)) in waits.iter_mut().zip(rules.conditions(raw)) {
+            let value = rules.value(condition, self.bank.value(&self.model, link.values[i]));
+            *slot = Some(match condition {
+                Condition::Delay => Wait::Delay(Duration::from_secs_f64(value.max(0.0))),
+                Condition::Step => Wait::Step,
+                Condition::Position => {
+                    let place = (value.round() as i64).saturating_add(self.zero);
+                    Wait::Position(self.motor.reaches(self.now, place))
+                }
+            });
+        }
+        Rule { waits, all: is_set(rules.all), through: is_set(rules.through) }
+    }
+}

@@ -1,0 +1,113 @@
+//! What rows say about motions, in counts.
+
+use super::Drive;
+use crate::behaviour::Ramp;
+use crate::model::{Choice, Counts};
+use crate::motion::Move;
+use crate::units::Dimension;
+use crate::words::{RowId, Setting};
+
+/// The rows that a motion goes by, and the drive that holds their values.
+#[derive(Clone, Copy)]
+pub(super) struct Settings<'a> {
+    drive: &'a Drive,
+    rows: &'a [(Setting, RowId)],
+}
+
+impl Drive {
+    /// What `rows` say.
+    pub(super) fn settings<'a>(&'a self, rows: &'a [(Setting, RowId)]) -> Settings<'a> {
+        Settings { drive: self, rows }
+    }
+
+    /// What the rows of the axis say.
+    pub(super) fn axis(&self) -> Settings<'_> {
+        self.settings(&self.model.wiring.axis.settings)
+    }
+
+    /// What a choice comes to, if there is one.
+    pub(super) fn chosen<T: Copy>(&self, choice: &Option<Choice<T>>) -> Option<T> {
+        choice.as_ref()?.get(|row| self.bank.value(&self.model, row))
+    }
+
+    /// Counts for one revolution.
+    pub(super) fn counts_per_rev(&self) -> f64 {
+        match self.model.wiring.axis.counts_per_rev {
+            Counts::Fixed(counts) => counts.into(),
+            Counts::Row(row) => self.bank.value(&self.model, row) as f64,
+        }
+    }
+}
+
+impl Settings<'_> {
+    /// How far, or where to, and how.
+    pub(super) fn next_move(self) -> (i64, Move) {
+        let target = self.value(Setting::MoveTarget).map_or(0.0, |(value, _)| value.round());
+        let speed = self.speed(Setting::MoveSpeed).abs();
+        let start = Some(Setting::MoveStartSpeed);
+        let Ramp { accel, decel, start_speed, .. } =
+            self.ramp(speed, start, Setting::MoveAccel, Setting::MoveDecel);
+        (target as i64, Move { start_speed, speed, accel, decel })
+    }
+
+    /// How a run goes: at its speed, or the opposite.
+    pub(super) fn run(self, reverse: bool) -> Ramp {
+        let speed = self.speed(Setting::RunSpeed);
+        let speed = if reverse { -speed } else { speed };
+        self.ramp(speed, Some(Setting::RunStartSpeed), Setting::RunAccel, Setting::RunDecel)
+    }
+
+    /// Is the setting wired, and not 0?
+    pub(super) fn is_set(self, setting: Setting) -> bool {
+        self.value(setting).is_some_and(|(value, _)| value != 0.0)
+    }
+
+    /// Slopes that reach `speed` from the start speed; what slows down is what speeds up where no row says
+    /// more, and without either the speed changes at once.
+    pub(super) fn ramp(
+        self,
+        speed: f64,
+        start: Option<Setting>,
+        accel: Setting,
+        decel: Setting,
+    ) -> Ramp {
+        let start_speed = start.map_or(0.0, |start| self.speed(start).abs());
+        let change = (speed.abs() - start_speed).max(0.0);
+        let accel = self.slope(accel, change);
+        let decel = self.slope(decel, change).or(accel);
+        let (accel, decel) = (accel.unwrap_or(0.0), decel.unwrap_or(0.0));
+        Ramp { speed, accel, decel, start_speed }
+    }
+
+    /// Counts, if a row holds them.
+    pub(super) fn counts(self, setting: Setting) -> Option<i64> {
+        self.value(setting).map(|(value, _)| value.round() as i64)
+    }
+
+    /// Counts per second.
+    pub(super) fn speed(self, setting: Setting) -> f64 {
+        let rpm = self.value(setting).map_or(0.0, |(value, _)| value);
+        counts_per_s(rpm, self.drive.counts_per_rev())
+    }
+
+    /// Counts per second squared.
+    pub(super) fn slope(self, setting: Setting, change: f64) -> Option<f64> {
+        let (value, dimension) = self.value(setting)?;
+        Some(match dimension {
+            Dimension::Time => change / value,
+            _ => counts_per_s(value, self.drive.counts_per_rev()),
+        })
+    }
+
+    /// The value of a setting in the base unit of its dimension.
+    pub(super) fn value(self, setting: Setting) -> Option<(f64, Dimension)> {
+        let (_, row) = *self.rows.iter().find(|(it, _)| *it == setting)?;
+        let Drive { model, bank, .. } = self.drive;
+        let unit = model.map.row(row).unit;
+        Some((bank.value(model, row) as f64 * unit.scale, unit.dimension))
+    }
+}
+
+fn counts_per_s(rpm: f64, counts_per_rev: f64) -> f64 {
+    rpm * counts_per_rev / 60.0
+}

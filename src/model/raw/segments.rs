@@ -1,0 +1,171 @@
+//! Motions by number: tables of segments that signals select and start, and chains of them.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+#[cfg(feature = "cli")]
+use schemars::JsonSchema;
+
+/// Motions by number, which signals select and start.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawSegments {
+    /// Moves: `segment_start` starts the one selected.
+    pub position: Option<RawPositionSegments>,
+    /// Runs: `segment_run` starts the one selected.
+    pub velocity: Option<RawVelocitySegments>,
+}
+
+/// Moves by number.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawPositionSegments {
+    /// Numbers of the first and of the last.
+    pub n: [u16; 2],
+    /// What a segment goes by, out of the settings of a move, each with its row; `{n}` in the name of a row
+    /// is the number of the segment.
+    pub quantities: BTreeMap<String, String>,
+    /// Are targets positions or ways? default `relative`.
+    #[serde(default)]
+    pub kind: RawKind,
+    /// How one segment follows another. Left out: none does.
+    pub chain: Option<RawChain>,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// Runs by number.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawVelocitySegments {
+    /// Numbers of the first and of the last.
+    pub n: [u16; 2],
+    /// What a segment goes by, out of the settings of a run, each with its row; `{n}` in the name of a row
+    /// is the number of the segment.
+    pub quantities: BTreeMap<String, String>,
+    /// Does a segment last while `segment_run` is active, or from its edge on? default `level`.
+    #[serde(default)]
+    pub trigger: RawTrigger,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// Are targets positions or ways: always the same, or as a register says.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(
+    untagged,
+    expecting = "kind is relative, absolute or {register: ROW, codes: {0: relative, ...}}"
+)]
+pub enum RawKind {
+    /// Always the same.
+    Fixed(RawTarget),
+    /// As a register says.
+    Register {
+        /// The row; `{n}` in its name is the number of the segment.
+        register: String,
+        /// The kind by value; any other value is an empty segment too.
+        codes: BTreeMap<i64, RawKindCode>,
+    },
+}
+
+impl Default for RawKind {
+    fn default() -> Self {
+        Self::Fixed(RawTarget::Relative)
+    }
+}
+
+/// What a target is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawTarget {
+    /// A way to go.
+    Relative,
+    /// A position.
+    Absolute,
+}
+
+/// What a value of the row says about a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawKindCode {
+    /// Its target is a way to go.
+    Relative,
+    /// Its target is a position.
+    Absolute,
+    /// It is empty: nothing starts it.
+    None,
+}
+
+/// How long a velocity segment lasts: always the same, or as a register says.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(
+    untagged,
+    expecting = "trigger is level, edge or {register: ROW, codes: {0: level, 1: edge}}"
+)]
+pub enum RawTrigger {
+    /// Always the same.
+    Fixed(RawLasts),
+    /// As a register says.
+    Register {
+        /// The row.
+        register: String,
+        /// How long by value.
+        codes: BTreeMap<i64, RawLasts>,
+    },
+}
+
+impl Default for RawTrigger {
+    fn default() -> Self {
+        Self::Fixed(RawLasts::Level)
+    }
+}
+
+/// How long a velocity segment lasts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawLasts {
+    /// While the signal is active.
+    Level,
+    /// From the rising edge until something stops it.
+    Edge,
+}
+
+/// How one segment follows another. In the name of each row `{n}` is the number of the segment.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawChain {
+    /// The row with the number of the next segment; a number that no segment has ends the chain.
+    pub next: String,
+    /// The row that says what a segment waits for. While it says nothing, the chain ends.
+    pub rule: String,
+    /// The conditions of a segment.
+    pub conditions: Vec<RawCondition>,
+    /// Condition by code; any other code is none.
+    pub codes: BTreeMap<u8, String>,
+    /// Unit of a condition's value, by condition (`ms`, `1000 counts`).
+    #[serde(default)]
+    pub units: BTreeMap<String, String>,
+    /// Bit of the rule: wait for all conditions, not for the first. Left out: for the first.
+    pub all: Option<u8>,
+    /// Bit of the rule: go on as soon as the conditions are met, in motion too. Without conditions, go on in
+    /// position. Left out: go on from standstill.
+    pub through: Option<u8>,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// A condition of a segment.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawCondition {
+    /// Which hex digit of the rule has its code, from the right, from 0.
+    pub digit: u8,
+    /// The row with its value.
+    pub value: String,
+}

@@ -1,0 +1,126 @@
+//! The state file on the disk: taken at the start, and written whole each time a drive has stored something.
+//!
+//! Beside the file first, then moved over it, and on the disk before anybody goes on: whatever ends the
+//! process, the file is the old one or the new one. A disk that fails does not stop the drives.
+
+use super::library::plain;
+use crate::bench::StateFile;
+use crate::bus::Bus;
+use crate::event::DriveId;
+use rustix::fs::{FlockOperation, flock};
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use tracing::{error, info};
+
+/// The state file of a run.
+#[derive(Debug)]
+pub struct Store {
+    /// As the user calls it.
+    path: PathBuf,
+    /// Where that leads: a link stays one.
+    target: PathBuf,
+    /// The file as it lies there, locked: one run at a time.
+    held: Option<File>,
+    state: StateFile,
+    /// The disk lacks something.
+    behind: bool,
+}
+
+impl Store {
+    /// Takes the file at `path` for this run, and gives back what stands in it, if there is one.
+    ///
+    /// # Errors
+    /// If it can't be read, or another run has it.
+    pub fn open(path: &Path) -> io::Result<(Self, Option<String>)> {
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let held = match File::open(&target) {
+            Ok(file) => Some(file),
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
+        held.as_ref().map(lock).transpose()?;
+        let text = held.as_ref().map(io::read_to_string).transpose()?;
+        let (path, state) = (path.to_owned(), StateFile::default());
+        Ok((Self { path, target, held, state, behind: false }, text))
+    }
+
+    /// As the user calls it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes what all drives of `line` keep. Nothing is written yet.
+    pub fn take(&mut self, line: &str, bus: &Bus) {
+        self.state.keep_all(line, bus);
+    }
+
+    /// Keeps what a drive of `line` has stored. If the disk fails, that is told once; the next time it is tried
+    /// again, with everything.
+    pub fn keep(&mut self, line: &str, bus: &Bus, drive: DriveId) {
+        self.state.keep(line, bus, drive);
+        let was_behind = self.behind;
+        let saved = self.save();
+        let path = self.path.display();
+        match saved {
+            Ok(()) if was_behind => info!("{path} is written again, with all that it lacked"),
+            Err(why) if !was_behind => {
+                error!("can't write {path}: {}; what drives store is not in it", plain(&why));
+            }
+            Ok(()) | Err(_) => {}
+        }
+    }
+
+    /// Writes everything.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn save(&mut self) -> io::Result<()> {
+        self.behind = true;
+        let beside = beside(&self.target);
+        let mut file = File::create(&beside)?;
+        if let Ok(old) = fs::metadata(&self.target) {
+            file.set_permissions(old.permissions())?;
+        }
+        lock(&file)?;
+        file.write_all(self.state.text().as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&beside, &self.target)?;
+        self.held = Some(file);
+        // The new name is on the disk once its folder is.
+        File::open(folder(&self.target))?.sync_all()?;
+        self.behind = false;
+        Ok(())
+    }
+
+    /// Tries for the last time, if the disk lacks something.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn finish(&mut self) -> io::Result<()> {
+        if self.behind { self.save() } else { Ok(()) }
+    }
+}
+
+/// Locks `file` until it is closed, be it by `kill -9`.
+fn lock(file: &File) -> io::Result<()> {
+    match flock(file, FlockOperation::NonBlockingLockExclusive) {
+        Err(rustix::io::Errno::WOULDBLOCK) => Err(io::Error::other("another run uses it")),
+        // Some network file systems know no locks.
+        _ => Ok(()),
+    }
+}
+
+/// Always the same name: a run that was killed leaves at most one such file, and the next one takes it.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".new");
+    path.with_file_name(name)
+}
+
+/// The folder that `path` lies in.
+pub(super) fn folder(path: &Path) -> &Path {
+    path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
