@@ -80,6 +80,17 @@ pub enum What {
     Moved(Mode),
     /// A TCP stream that could not be followed and was closed.
     Lost(BadHeader),
+    /// A fault rule did something to a request or its reply.
+    Fault {
+        /// Which rule.
+        rule: RuleId,
+        /// The unit that was asked.
+        unit: u8,
+        /// What it did.
+        mishap: Mishap,
+        /// How often it has acted by now.
+        hit: u64,
+    },
     /// A drive did something without being asked on this line, or as a consequence.
     Drive {
         /// Who.
@@ -89,6 +100,52 @@ pub enum What {
         /// What.
         change: Change,
     },
+}
+
+/// Number of a fault rule on its bus, from 0; none is used for another name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RuleId(pub u16);
+
+/// What bad weather did to a request or its reply, with the numbers that it drew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mishap {
+    /// No drive saw the request.
+    RequestLost,
+    /// The reply never left.
+    ReplyLost,
+    /// The reply left with a wrong checksum.
+    BadChecksum,
+    /// So many bits of the reply were turned over.
+    BitsFlipped(u8),
+    /// So many bytes at the end were cut off.
+    Truncated(u8),
+    /// So many random bytes followed.
+    Extra(u8),
+    /// So many random bytes came before.
+    Garbage(u8),
+    /// The reply leaves so much later.
+    Delayed(Duration),
+    /// The reply leaves when the next request comes.
+    Late,
+    /// The reply left twice.
+    Duplicated,
+    /// The reply left in two pieces.
+    Split {
+        /// Bytes in the first; `None` is half of them.
+        at: Option<u16>,
+        /// Time between them.
+        gap: Duration,
+    },
+    /// The reply named this unit.
+    WrongUnit(u8),
+    /// The reply named this function.
+    WrongFunction(u8),
+    /// This exception answered; no drive executed anything.
+    Exception(u8),
+    /// The exception for a busy server answered; no drive executed anything.
+    Busy,
+    /// The request came back first.
+    Echoed,
 }
 
 /// A request to one drive and its answer.

@@ -24,12 +24,12 @@
 //! bench  log            benches: YAML -> buses | events as text
 //! bus                   one line: framing + drives
 //! drive                 the only place that sees registers AND behaviours
-//! bank  behaviour       cells and plans | state machines
+//! bank  behaviour  fault                               cells and plans | state machines | bad weather
 //! model                 YAML -> Model
 //! line  motion          silence and frames | closed form
 //! event                 what happened
 //! words  serial         what models and behaviours both say | speed and format of a line
-//! time  units  wire  problem                               what everyone may say
+//! time  units  wire  problem  rng                          what everyone may say
 //! ```
 
 pub mod bank;
@@ -38,11 +38,13 @@ pub mod bench;
 pub mod bus;
 pub mod drive;
 pub mod event;
+pub mod fault;
 pub mod line;
 pub mod log;
 pub mod model;
 pub mod motion;
 pub mod problem;
+pub mod rng;
 pub mod serial;
 #[cfg(feature = "cli")]
 pub mod shell;

@@ -3,6 +3,7 @@
 mod allocation;
 mod documents;
 mod expect;
+mod fault;
 mod frames;
 mod homing;
 mod kit;

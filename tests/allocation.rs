@@ -1,8 +1,8 @@
 //! An answer costs no heap: frames, requests and events lie in place.
 
-use crate::kit::MODELS;
+use crate::kit::{MODELS, line_of, text_of};
 use drivemu::bench::{Device, DeviceSpec, WireSpec};
-use drivemu::bus::{Bus, LinkId};
+use drivemu::bus::{Bus, Command, LinkId};
 use drivemu::model::Choices;
 use drivemu::model::builtin::Builtin;
 use drivemu::time::{Duration, Instant};
@@ -21,6 +21,11 @@ fn a_transaction_in_the_steady_state_allocates_nothing() {
         let [high, low] = row.at.to_be_bytes();
         let read = rtu::encode(unit, &[3, high, low, 0, row.kind.words() as u8]);
         let refused = rtu::encode(unit, &[3, 0xFF, 0xF0, 0, 1]);
+        // A rule that looks at each request and never has its turn.
+        let mut line = line_of(text_of(name), &[], &DeviceSpec::default());
+        line.add_fault("late:register=0-0xFFFF,skip=1000000").expect("a good rule");
+        let rule = line.faults.remove(0);
+        bus.command(bus.now(), Command::AddFault(rule)).expect("a free name");
         let mut now = Instant::from_millis(2000);
         bus.advance_to(now);
         while bus.poll_output().is_some() {}

@@ -9,7 +9,9 @@ use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
-    Action, AlarmCause, Cause, Condition, Input, Modifier, Output, Quantity, Setting, Word,
+    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, LimitRule, LimitSource,
+    LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace, Quantity, Setting,
+    SoftLimitRule, Then, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -57,6 +59,7 @@ fn roles() -> String {
     let conditions = "What a segment waits for before the next one of its chain: `axis.segments.position.chain` \
                       gives each its code.";
     section::<Condition>(&mut out, "Conditions", conditions);
+    homing(&mut out);
     let alarms =
         "Why a drive trips: `alarms` gives each its number. What has no number is never raised.";
     section::<AlarmCause>(&mut out, "Alarm causes", alarms);
@@ -64,6 +67,31 @@ fn roles() -> String {
                   exception code. Of all that hold, the first in the list answers.";
     section::<Cause>(&mut out, "Causes of refusal", causes);
     out
+}
+
+/// The words of `homing` and `limits`.
+fn homing(out: &mut String) {
+    section::<Pace>(out, "Paces", "How fast a homing step goes: `at`.");
+    section::<Then>(out, "Ends of steps", "What happens at the end of a homing step: `then`.");
+    let starters = "What may start a homing: `homing.starter`.";
+    section::<HomeStarter>(out, "Starters of a homing", starters);
+    let limit = "What happens when a limit ends the way of a homing step: `homing.limit`.";
+    section::<LimitRule>(out, "Meanings of a limit", limit);
+    let source = "What tells a homing that the axis has come to a limit: `homing.limit_source`.";
+    section::<LimitSource>(out, "Sources of limits", source);
+    let index = "How an index pulse refines the origin: `homing.index`.";
+    section::<IndexRule>(out, "Uses of the index pulse", index);
+    let stop = "How the axis stands there: `homing.stop`.";
+    section::<OriginStop>(out, "Ways to stand at the origin", stop);
+    let position = "What the position register says in the end: `position` under `homing.finish`.";
+    section::<OriginPosition>(out, "Positions after a homing", position);
+    section::<LimitStop>(
+        out,
+        "Ways to stop at a limit",
+        "How a limit stops the axis: `limits.stop`.",
+    );
+    let soft = "When soft limits are in force: `limits.soft`.";
+    section::<SoftLimitRule>(out, "Rules for soft limits", soft);
 }
 
 /// The units that fit the role `name`.
@@ -126,7 +154,7 @@ fn is_part(part: &Value, whole: &Value) -> bool {
 }
 
 /// The blocks of a page that are fenced as `kind`.
-fn fenced(page: &str, kind: &str) -> Vec<String> {
+pub fn fenced(page: &str, kind: &str) -> Vec<String> {
     let open = format!("```{kind}\n");
     page.split(&open)
         .skip(1)

@@ -122,7 +122,8 @@ pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Bench
     let device = device.unwrap_or_else(|problems| panic!("{}", problems[0].what));
     let devices = vec![device];
     let wire = WireSpec::of(&devices, None, None, false);
-    BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices }
+    let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
+    BenchLine { name, port, wire, devices, faults }
 }
 
 /// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
@@ -147,8 +148,9 @@ pub fn bench_line(text: &str) -> BenchLine {
 
 /// The same line again.
 pub fn again(line: &BenchLine) -> BenchLine {
-    let BenchLine { name, port, wire, devices } = line;
-    BenchLine { name: name.clone(), port: port.clone(), wire: *wire, devices: devices.clone() }
+    let BenchLine { name, port, wire, devices, faults } = line;
+    let (name, port, faults) = (name.clone(), port.clone(), faults.clone());
+    BenchLine { name, port, wire: *wire, devices: devices.clone(), faults }
 }
 
 /// The refusal of the last transaction, if it was one.

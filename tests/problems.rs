@@ -3,9 +3,9 @@
 //! `UPDATE_EXPECT=1 cargo test` writes the expectations anew; read them as somebody who made the mistake.
 
 use crate::expect::{files, read, root, same};
-use crate::kit::Files;
+use crate::kit::{Files, line_of, text_of};
 use crate::source::Source;
-use drivemu::bench::{self, BuiltinLibrary, Library, Saved, kind_of};
+use drivemu::bench::{self, BuiltinLibrary, DeviceSpec, Library, Saved, kind_of};
 use drivemu::model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
@@ -25,14 +25,20 @@ impl Library for BadModels {
     }
 }
 
-/// Each bad file with what is told about it.
+/// Each bad file with what is told about it; a `.spec` is a fault rule in compact form.
 static TOLD: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {
-    let files = files("tests/problems", "yaml").into_iter();
+    let specs = files("tests/problems/fault", "spec");
+    let files = files("tests/problems", "yaml").into_iter().chain(specs);
     files.map(|file| (file.clone(), told(&file))).collect()
 });
 
 fn told(file: &Path) -> String {
     let text = read(file);
+    if is_spec(file) {
+        let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
+        let spec = text.trim_end_matches('\n');
+        return render(&line.fault(spec, &[]).err().unwrap_or_default(), "--fault", spec);
+    }
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let problems = match file.parent().and_then(Path::file_name) {
         Some(kind) if kind == "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
@@ -50,6 +56,10 @@ fn of_state(text: &str) -> Result<(), Vec<Problem>> {
     saved.finish()
 }
 
+fn is_spec(file: &Path) -> bool {
+    file.extension().is_some_and(|it| it == "spec")
+}
+
 #[test]
 fn each_bad_file_is_told_as_expected() {
     let check = |(file, told): &(PathBuf, String)| {
@@ -63,7 +73,7 @@ fn each_bad_file_is_told_as_expected() {
 #[test]
 fn the_kind_of_a_file_shows() {
     let is_state = |file: &Path| file.parent().is_some_and(|it| it.ends_with("state"));
-    for (file, told) in TOLD.iter().filter(|(file, _)| !is_state(file)) {
+    for (file, told) in TOLD.iter().filter(|(file, _)| !is_state(file) && !is_spec(file)) {
         let text = read(file);
         let by_kind = match kind_of(&text) {
             "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
@@ -84,14 +94,18 @@ fn good_models_have_no_problem() {
 #[test]
 fn each_expectation_has_its_bad_file() {
     let mut orphans = files("tests/problems", "txt");
-    orphans.retain(|file| !file.with_extension("yaml").exists());
+    let exists = |file: &PathBuf, ending| file.with_extension(ending).exists();
+    orphans.retain(|file| !exists(file, "yaml") && !exists(file, "spec"));
     assert!(orphans.is_empty(), "{orphans:?}");
 }
 
 /// Where sentences for people who write files come from.
-const SPEAKERS: [&str; 5] = [
+const SPEAKERS: [&str; 8] = [
     "src/model/",
     "src/bench/",
+    "src/fault/compile.rs",
+    "src/fault/raw.rs",
+    "src/fault/spec.rs",
     "src/serial.rs",
     "src/problem/place/refuse.rs",
     "src/problem/section.rs",

@@ -1,6 +1,6 @@
 //! What holds whatever happens: random traffic, cut anywhere, at any time.
 
-mod traffic;
+pub mod traffic;
 
 use crate::kit::{MODELS, drain, line_of, rig, text_of};
 use drivemu::bench::DeviceSpec;
@@ -286,7 +286,7 @@ fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Ev
             }
             Some(Happening::Bytes(bytes)) => bus.receive(now, link, bytes),
             Some(Happening::Do(command)) => {
-                bus.command(now, *command).expect("a drive that has it all");
+                bus.command(now, command.clone()).expect("a drive that has it all");
             }
         }
         let drained = drain(&mut bus);
@@ -299,7 +299,7 @@ fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Ev
 }
 
 fn bus(model: &str, framing: Framing) -> (Bus, LinkId) {
-    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus();
+    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus(0);
     let link = bus.open(framing);
     drain(&mut bus);
     (bus, link)

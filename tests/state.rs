@@ -112,7 +112,7 @@ fn a_bench_that_says_its_speed_sets_all_drives_to_it() {
         let mut saved = Saved::read(state).expect("a state");
         let bench = bench::parse_saved(text, &Files, &mut saved).expect("a bench");
         saved.finish().expect("a state of these drives");
-        let bus = bench.lines[0].bus();
+        let bus = bench.lines[0].bus(0);
         let drives = bus.drives().map(|(_, drive)| drive.mode());
         drives.map(|mode| mode.expect("a mode").to_string()).collect()
     };

@@ -7,12 +7,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The floors, lowest first. A module may import from floors below its own, and from itself.
 const FLOORS: [&[&str]; 13] = [
-    &["time", "units", "wire", "problem"],
+    &["time", "units", "wire", "problem", "rng"],
     &["words", "serial"],
     &["event"],
     &["line", "motion"],
     &["model"],
-    &["bank", "behaviour"],
+    &["bank", "behaviour", "fault"],
     &["drive"],
     &["bus"],
     &["bench", "log"],
@@ -23,13 +23,14 @@ const FLOORS: [&[&str]; 13] = [
 ];
 
 /// Narrower than the floors: what these modules must not know, although it lies below them.
-const FORBIDDEN: [(&str, &[&str]); 6] = [
+const FORBIDDEN: [(&str, &[&str]); 7] = [
     ("motion", &["words", "event", "wire", "serial", "problem"]),
     ("line", &["words", "event", "units", "serial"]),
     ("bank", &["event", "line"]),
     ("behaviour", &["wire", "line", "model", "units", "problem"]),
     ("log", &["problem", "line"]),
     ("drive", &["problem"]),
+    ("fault", &["model", "line", "motion", "serial"]),
 ];
 
 /// The one file of the testkit that may use the shell: all others work without it.

@@ -1,7 +1,10 @@
-//! The machine on an axis, as a bench says it: whether its switches, stops and marks make sense.
+//! The machine on an axis, as a bench says it: whether its switches, stops and marks make sense, and whether the
+//! drive of `wiring` can tell that they are there.
 
-use super::raw::RawMachine;
+use super::raw::{RawIndex, RawMachine};
+use crate::model::Wiring;
 use crate::motion::{Index, Machine, Zone};
+use crate::words::{Input, Method, Step, Until, Word};
 
 /// What is wrong with a machine: at which key, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -12,52 +15,106 @@ pub struct MachineProblem {
     pub what: String,
 }
 
-/// The machine that `raw` describes.
+/// The machine that `raw` describes, on the axis of a drive that is wired so.
 ///
 /// # Errors
-/// Everything about it that can't be.
-pub fn machine(raw: &RawMachine) -> Result<Machine, Vec<MachineProblem>> {
+/// Everything about it that can't be, or that changes nothing.
+pub fn machine(raw: &RawMachine, wiring: &Wiring) -> Result<Machine, Vec<MachineProblem>> {
+    let pair = |it: Option<[i32; 2]>| it.map(|it| it.map(i64::from));
+    let index = |it: &RawIndex| Index { every: it.every.into(), offset: it.offset.into() };
+    let machine = Machine {
+        home: pair(raw.home).map(|[from, to]| Zone { from, to }),
+        negative_limit: raw.negative_limit.map(i64::from),
+        positive_limit: raw.positive_limit.map(i64::from),
+        hard_stop: pair(raw.hard_stop),
+        index: raw.index.as_ref().map(index),
+    };
+    let mut problems = impossible(&machine, raw.start.into());
+    if problems.is_empty() {
+        problems = beyond_the_stops(&machine);
+        problems.extend(unseen(&machine, raw.start, wiring));
+    }
+    if problems.is_empty() { Ok(machine) } else { Err(problems) }
+}
+
+fn impossible(machine: &Machine, start: i64) -> Vec<MachineProblem> {
     let mut problems = Vec::new();
     let mut refuse = |key, what| problems.push(MachineProblem { key, what });
-    let counts = |it: Option<i32>| it.map(i64::from);
-    let pair = |it: Option<[i32; 2]>| it.map(|it| it.map(i64::from));
-    let home = pair(raw.home);
-    if let Some([from, to]) = home.filter(|[from, to]| from >= to) {
-        refuse(
-            "home",
-            format!("the home switch would be active from {from} to before {to}, which is nowhere"),
-        );
+    if let Some(Zone { from, to }) = machine.home.filter(|it| it.from >= it.to) {
+        let what = format!("no count lies from {from} to before {to}, so it is never active");
+        refuse("home", what);
     }
-    let limits = (counts(raw.negative_limit), counts(raw.positive_limit));
-    if let (Some(negative), Some(positive)) = limits
+    if let (Some(negative), Some(positive)) = (machine.negative_limit, machine.positive_limit)
         && negative > positive
     {
         refuse("positive_limit", format!("it lies below the negative limit, {negative}"));
     }
-    let start = i64::from(raw.start);
-    match pair(raw.hard_stop) {
+    match machine.hard_stop {
         Some([low, high]) if low >= high => {
             refuse("hard_stop", format!("there is no way from {low} to {high}"));
         }
         Some([low, high]) if start < low || start > high => {
-            let what = format!("the axis stands beyond its hard stops, {low} and {high}");
-            refuse("start", what);
+            let what = format!("the axis starts at {start}, and gets from {low} to {high} only");
+            refuse("hard_stop", what);
         }
         _ => {}
     }
-    let index =
-        raw.index.as_ref().map(|it| Index { every: it.every.into(), offset: it.offset.into() });
-    if index.is_some_and(|it| it.every < 1) {
-        refuse("index", "there is at least one count from one index pulse to the next".into());
+    if machine.index.is_some_and(|it| it.every < 1) {
+        refuse("index", "from one index pulse to the next it is 1 count or more".into());
     }
-    match problems.is_empty() {
-        true => Ok(Machine {
-            home: home.map(|[from, to]| Zone { from, to }),
-            negative_limit: limits.0,
-            positive_limit: limits.1,
-            hard_stop: pair(raw.hard_stop),
-            index,
-        }),
-        false => Err(problems),
+    problems
+}
+
+/// Switches that the axis never gets to.
+fn beyond_the_stops(machine: &Machine) -> Vec<MachineProblem> {
+    let Some([low, high]) = machine.hard_stop else { return Vec::new() };
+    let beyond = [
+        ("home", machine.home.is_some_and(|it| it.to <= low || it.from > high)),
+        ("negative_limit", machine.negative_limit.is_some_and(|it| it <= low)),
+        ("positive_limit", machine.positive_limit.is_some_and(|it| it > high)),
+    ];
+    let what = format!("the hard stops, {low} and {high}, keep the axis from it");
+    let problem = |(key, _)| MachineProblem { key, what: what.clone() };
+    beyond.into_iter().filter(|(_, is)| *is).map(problem).collect()
+}
+
+/// What this drive can't see.
+fn unseen(machine: &Machine, start: i32, wiring: &Wiring) -> Vec<MachineProblem> {
+    let mut problems = Vec::new();
+    let mut refuse = |key, what| problems.push(MachineProblem { key, what });
+    let switches = [
+        ("home", Input::HomeSwitch, machine.home.is_some()),
+        ("negative_limit", Input::LimitNeg, machine.negative_limit.is_some()),
+        ("positive_limit", Input::LimitPos, machine.positive_limit.is_some()),
+    ];
+    for (key, signal, _) in switches.into_iter().filter(|(.., is)| *is) {
+        if !is_wired(wiring, signal) {
+            let what = format!("no terminal of this drive can carry `{}`", signal.name());
+            refuse(key, what);
+        }
     }
+    let moves = !wiring.axis.settings.is_empty();
+    if machine.hard_stop.is_some() && !moves {
+        refuse("hard_stop", "nothing moves the axis of this drive".into());
+    }
+    let marked = looks_for_index(wiring);
+    if machine.index.is_some() && !marked {
+        refuse("index", "no homing of this drive looks for an index pulse".into());
+    }
+    let alone = *machine == Machine::default();
+    if start != 0 && alone && !marked {
+        refuse("start", "no switch and no stop tells where the axis stands".into());
+    }
+    problems
+}
+
+fn is_wired(wiring: &Wiring, signal: Input) -> bool {
+    let mut functions = wiring.input_terminals.iter().flat_map(|it| &it.codes);
+    wiring.machine_inputs.contains(&signal) || functions.any(|(_, it)| *it == signal)
+}
+
+fn looks_for_index(wiring: &Wiring) -> bool {
+    let waits = |step: Step| matches!(step.until, Until::Index(_));
+    let looks = |it: &Method| it.index || it.all_steps().any(waits);
+    wiring.homing.iter().flat_map(|it| it.methods.values()).any(looks)
 }

@@ -4,6 +4,7 @@
 //! opens nothing. Model files are fetched through a [`Library`], which is the shell's to provide.
 
 mod device;
+mod faults;
 mod machine;
 mod match_line;
 mod parse;
@@ -19,6 +20,7 @@ pub use state::{Saved, StateFile};
 pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;
+use crate::fault::Rule;
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use std::sync::Arc;
@@ -85,6 +87,8 @@ pub struct BenchLine {
     pub wire: WireSpec,
     /// What is on it.
     pub devices: Vec<Device>,
+    /// Fault rules, in order.
+    pub faults: Vec<Rule>,
 }
 
 /// Where masters reach a line.
@@ -122,9 +126,10 @@ impl PortSpec {
 
 impl BenchLine {
     /// A bus with all drives of this line on it, switched on. On a serial line they hear what is said in
-    /// the line's mode; on Modbus TCP there is none.
-    pub fn bus(&self) -> Bus {
+    /// the line's mode; on Modbus TCP there is none. What its fault rules draw depends on `seed`.
+    pub fn bus(&self, seed: u64) -> Bus {
         let mut bus = Bus::new();
+        bus.set_faults(self.weather(seed));
         if !matches!(self.port, PortSpec::Tcp(_)) {
             bus.set_mode(self.wire.mode);
         }

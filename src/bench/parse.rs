@@ -1,5 +1,6 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
+use super::faults::Drives;
 use super::raw::{KEYS, RawBenchDrive, RawBenchLine};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, Saved, SpecProblem,
@@ -7,6 +8,7 @@ use super::{
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
+use crate::fault::{self, Rule};
 use crate::model::{Choices, Model};
 use crate::problem::{At, Path, Problem, Seg, section};
 use crate::serial::Settings;
@@ -178,7 +180,7 @@ impl Reader<'_> {
 
     fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
         let model = self.model(raw, path)?;
-        let machine = machine(&raw.machine).map_err(|problems| {
+        let machine = machine(&raw.machine, &model.wiring).map_err(|problems| {
             let path = path.key("machine");
             let problem = |it: MachineProblem| Problem::value(path.key(it.key), it.what);
             self.problems.extend(problems.into_iter().map(problem));
@@ -266,7 +268,26 @@ impl Reader<'_> {
                 }
             }
         }
-        Some(BenchLine { name, port, wire, devices })
+        let faults = self.faults(raw, &port, &devices, path);
+        Some(BenchLine { name, port, wire, devices, faults })
+    }
+
+    fn faults(
+        &mut self,
+        raw: &RawBenchLine,
+        port: &PortSpec,
+        devices: &[Device],
+        path: &Path,
+    ) -> Vec<Rule> {
+        let site = Drives { port, devices };
+        let mut rules: Vec<Rule> = Vec::new();
+        for (i, raw) in raw.faults.iter().enumerate() {
+            let path = path.key("faults").index(i);
+            let taken: Vec<_> = rules.iter().map(|rule| rule.name.as_str()).collect();
+            let more = fault::compile(raw, &path, &site, &taken, &mut self.problems);
+            rules.extend(more);
+        }
+        rules
     }
 
     /// No two stations of a line may answer to one address. What masters have saved since may clash: real

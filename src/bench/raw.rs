@@ -1,5 +1,6 @@
 //! A bench file as it is written: the reference of the format.
 
+use crate::fault::raw::RawFault;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
@@ -40,6 +41,9 @@ pub struct RawBenchLine {
     pub strict: bool,
     /// The drives.
     pub drives: Vec<RawBenchDrive>,
+    /// Bad weather: fault rules. Of all that hold for a request, the first acts.
+    #[serde(default)]
+    pub faults: Vec<RawFault>,
 }
 
 /// One drive on a line.
@@ -123,30 +127,46 @@ pub fn schema() -> serde_json::Value {
 /// Every key of the format, for advice on unknown ones.
 pub const KEYS: &[&str] = &[
     "ascii",
+    "at",
+    "bits",
+    "bytes",
+    "code",
+    "count",
+    "do",
     "drives",
     "every",
+    "faults",
+    "from",
+    "function",
+    "gap_ms",
     "hard_stop",
     "home",
     "index",
     "lines",
     "machine",
     "model",
+    "ms",
     "name",
     "negative_limit",
     "offset",
     "options",
     "position",
     "positive_limit",
+    "probability",
     "pty",
+    "register",
     "rtu_over_tcp",
     "seed",
     "serial",
     "set",
     "settings",
+    "skip",
     "start",
     "strict",
     "switches",
     "tcp",
     "terminals",
+    "to",
     "unit",
+    "until",
 ];

@@ -2,6 +2,7 @@
 
 use super::{Bus, LinkId, Output};
 use crate::event::{DriveId, Transaction, What};
+use crate::fault::Strike;
 use crate::line::{Foreign, Heard};
 use crate::wire::function::{EXCEPTION, READ};
 use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
@@ -18,6 +19,9 @@ impl Bus {
     /// Takes everything that `link` has heard by now.
     pub(super) fn listen(&mut self, link: LinkId) {
         while let Some(taken) = self.take(link) {
+            if taken.is_request() {
+                self.release_late(link);
+            }
             match taken {
                 // The exception bit makes it an answer: our own, come back through a 2-wire adapter, or
                 // one of a second drive at our address. Answering it would never end.
@@ -26,7 +30,7 @@ impl Bus {
                 {
                     self.emit(What::Foreign { unit, pdu, answer: true });
                 }
-                Taken::Request { unit: BROADCAST, pdu } => self.broadcast(pdu),
+                Taken::Request { unit: BROADCAST, pdu } => self.broadcast(link, pdu),
                 Taken::Request { unit, pdu } => self.answer(link, unit, pdu),
                 Taken::BadCrc(what) => self.answer_bad_crc(link, what),
                 Taken::Told(what) => self.emit(what),
@@ -63,23 +67,37 @@ impl Bus {
         let addressed = self.by_unit[usize::from(unit)];
         let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
         let now = self.now;
-        let (answer, refusal) = match self.drives[usize::from(id.0)].request(now, &request) {
-            Ok(response) => (response.encode(), None),
-            Err(refusal) => {
-                let function = request.first().copied().unwrap_or(0);
-                let exception = Exception { function, code: refusal.code };
-                (Response::Exception(exception).encode(), Some(refusal))
-            }
-        };
-        // What an answer confirms must be there after a power failure.
-        self.keep(id);
-        self.transmit(link, unit, &answer);
-        self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
+        let mut strike = self.faults.strike(now, unit, &request);
+        let adu = Adu { unit, pdu: &request };
+        let function = adu.function();
+        let exception = |code| Response::Exception(Exception { function, code }).encode();
+        if let Some(code) = strike.as_ref().and_then(Strike::exception) {
+            self.send(link, adu, exception(code), strike.as_mut());
+        } else if !strike.as_ref().is_some_and(Strike::loses_request) {
+            let drive = &mut self.drives[usize::from(id.0)];
+            let (answer, refusal) = match drive.request(now, &request) {
+                Ok(response) => (response.encode(), None),
+                Err(refusal) => (exception(refusal.code), Some(refusal)),
+            };
+            // What an answer confirms must be there after a power failure.
+            self.keep(id);
+            self.send(link, adu, answer, strike.as_mut());
+            self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
+        }
+        self.tell(unit, strike.as_ref());
         self.after_drive(id);
     }
 
     /// Every drive executes, none answers (serial line, 2.1).
-    fn broadcast(&mut self, request: Pdu) {
+    fn broadcast(&mut self, link: LinkId, request: Pdu) {
+        let strike = self.faults.strike(self.now, BROADCAST, &request);
+        if strike.as_ref().is_some_and(Strike::loses_request) {
+            return self.tell(BROADCAST, strike.as_ref());
+        }
+        if strike.is_some() {
+            self.echo(link, Adu { unit: BROADCAST, pdu: &request });
+            self.tell(BROADCAST, strike.as_ref());
+        }
         if request.first() == Some(&READ) {
             return self.emit(What::BroadcastRead { request });
         }
@@ -104,15 +122,21 @@ impl Bus {
         });
         if let (Some((_, code)), [unit, function, ..]) = (answered, &*frame) {
             let exception = Exception { function: *function & 0x7F, code };
-            self.transmit(link, *unit, &Response::Exception(exception).encode());
+            let adu = Adu { unit: *unit, pdu: &frame[1..] };
+            self.send(link, adu, Response::Exception(exception).encode(), None);
         }
         self.emit(What::BadCrc { frame, crc, answered });
     }
+}
 
-    fn transmit(&mut self, link: LinkId, unit: u8, pdu: &[u8]) {
-        let Some(it) = self.links.get(&link) else { return };
-        let frame = it.line.frame(unit, pdu);
-        self.outputs.push_back(Output::Transmit { link, frame });
+impl Taken {
+    /// Does a master say it? Then late replies meet it.
+    fn is_request(&self) -> bool {
+        match self {
+            Self::Request { pdu, .. } => pdu.first().is_none_or(|it| it & EXCEPTION == 0),
+            Self::Told(what) => matches!(what, What::Foreign { answer: false, .. }),
+            Self::BadCrc(_) | Self::Lost(_) => false,
+        }
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::Bus;
 use crate::event::DriveId;
+use crate::fault::Rule;
 use crate::words::{AlarmCause, Word};
 use thiserror::Error;
 
-/// Something to do to a drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Something to do to a drive, or to the weather on its line.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Command {
     /// Put a signal on an input terminal, or take it off.
     Terminal {
@@ -29,6 +30,10 @@ pub enum Command {
         /// Which drive.
         drive: DriveId,
     },
+    /// Put a fault rule behind those of the line.
+    AddFault(Rule),
+    /// Take the fault rule of that name off the line. What it holds back still leaves.
+    RemoveFault(String),
 }
 
 /// The answer to a command that was carried out.
@@ -55,6 +60,20 @@ pub enum CommandError {
     /// The model has no alarm for the cause.
     #[error("the model has no alarm for `{0}`")]
     NoAlarm(&'static str),
+    /// Another rule has the name.
+    #[error("there is a fault rule `{0}` on this line already")]
+    FaultTaken(String),
+    /// No such rule.
+    #[error("there is no fault rule `{0}` on this line")]
+    NoFault(String),
+    /// The rule can do nothing on this line.
+    #[error("`{name}` can do nothing here: {why}")]
+    IdleFault {
+        /// The rule.
+        name: String,
+        /// Why.
+        why: &'static str,
+    },
 }
 
 impl Bus {
@@ -63,6 +82,8 @@ impl Bus {
             Command::Terminal { drive, .. }
             | Command::Raise { drive, .. }
             | Command::PowerCycle { drive } => drive,
+            Command::AddFault(rule) => return self.add_fault(rule),
+            Command::RemoveFault(name) => return self.remove_fault(name),
         };
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
@@ -84,7 +105,27 @@ impl Bus {
                 let device = self.devices[usize::from(id.0)];
                 self.power_cycle(device);
             }
+            // These are not for a drive and were carried out above.
+            Command::AddFault(_) | Command::RemoveFault(_) => {}
         }
         Ok(Reply::Done)
+    }
+
+    fn add_fault(&mut self, rule: Rule) -> Result<Reply, CommandError> {
+        let on_tcp = self.mode.is_none();
+        if let Some(why) = rule.act.kind().impossible_on_tcp().filter(|_| on_tcp) {
+            return Err(CommandError::IdleFault { name: rule.name, why });
+        }
+        let name = rule.name.clone();
+        match self.faults.add(rule) {
+            true => Ok(Reply::Done),
+            false => Err(CommandError::FaultTaken(name)),
+        }
+    }
+    fn remove_fault(&mut self, name: String) -> Result<Reply, CommandError> {
+        match self.faults.remove(&name) {
+            true => Ok(Reply::Done),
+            false => Err(CommandError::NoFault(name)),
+        }
     }
 }

@@ -2,26 +2,30 @@
 //!
 //! Contract: feed one input, drain [`Bus::poll_output`] to `None`, come back at [`Bus::poll_at`] or with the
 //! next input. Deadlines at or before `now` happen before the input that arrives at `now`; equal
-//! deadlines happen in a fixed order, links first, then drives by number.
+//! deadlines happen in a fixed order, links first, then replies that were held, then drives by number.
 //!
 //! A serial line has one link. A TCP port has one for each client, all onto the same drives.
 
 mod agenda;
 mod answer;
 mod command;
+mod held;
 mod output;
+mod weather;
 
 pub use command::{Command, CommandError, Reply};
 pub use output::{LinkId, Output, Wake, WakeReason};
 
 use crate::drive::{Drive, Setup};
 use crate::event::{Change, DriveId, Event, What};
+use crate::fault::Faults;
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
 use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::BROADCAST;
 use agenda::Agenda;
+use held::Held;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -42,6 +46,8 @@ pub struct Bus {
     units: Units,
     by_unit: [Option<DriveId>; 256],
     agenda: Agenda,
+    faults: Faults,
+    held: Held,
     outputs: VecDeque<Output>,
 }
 
@@ -65,6 +71,8 @@ impl Bus {
             units: Units::new(),
             by_unit: [None; 256],
             agenda: Agenda::default(),
+            faults: Faults::default(),
+            held: Held::default(),
             outputs: VecDeque::with_capacity(16),
         }
     }
@@ -100,8 +108,9 @@ impl Bus {
         self.links.values_mut().for_each(|link| link.line = Line::new(framing));
     }
 
-    /// Closes a link. What was half received on it is forgotten.
+    /// Closes a link. What was half received on it is forgotten, and what was to be sent on it.
     pub fn close(&mut self, link: LinkId) {
+        self.held.forget(link);
         self.links.remove(&link);
     }
 
@@ -163,6 +172,11 @@ impl Bus {
             self.now = self.now.max(wake.at);
             match wake.reason {
                 WakeReason::Silence(link) => self.listen(link),
+                WakeReason::Reply(_) => {
+                    let held = self.held.take_first();
+                    let output = held.map(|(link, frame)| Output::Transmit { link, frame });
+                    self.outputs.extend(output);
+                }
                 WakeReason::Drive(id) => {
                     self.drives[usize::from(id.0)].advance_to(self.now);
                     self.after_drive(id);
@@ -196,8 +210,10 @@ impl Bus {
             Some(Wake { at, reason: WakeReason::Silence(*id) })
         };
         let silences = self.links.iter().filter_map(silence);
+        let reply = |(at, link)| Wake { at, reason: WakeReason::Reply(link) };
+        let replies = self.held.first().map(reply);
         let drives = self.agenda.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
-        silences.chain(drives).min_by_key(|wake| wake.at)
+        silences.chain(replies).chain(drives).min_by_key(|wake| wake.at)
     }
 
     fn emit(&mut self, what: What) {

@@ -45,6 +45,8 @@ pub struct Wake {
 pub enum WakeReason {
     /// Silence will end a frame on that link.
     Silence(LinkId),
+    /// A reply that was held leaves on that link.
+    Reply(LinkId),
     /// Something will happen in that drive.
     Drive(DriveId),
 }

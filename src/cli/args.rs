@@ -66,6 +66,10 @@ pub struct RunArgs {
     /// Keep what drives keep over power-off in FILE, from run to run; --set wins over it
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
+    /// A fault rule, for every line of a bench: KIND, or KIND:KEY=VALUE,... such as
+    /// lose_reply:every=10 (see docs/faults.md); repeatable
+    #[arg(long, value_name = "SPEC")]
+    pub fault: Vec<String>,
     /// Seed of the run, told on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

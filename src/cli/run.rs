@@ -26,8 +26,14 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     }
     let (store, state) = args.state.as_deref().map(State::open).transpose()?.unzip();
     let mut state = state.unwrap_or_default();
-    let (bench, base) = bench(&args, &mut state.saved)?;
+    let (mut bench, base) = bench(&args, &mut state.saved)?;
     state.finish()?;
+    for spec in &args.fault {
+        for line in &mut bench.lines {
+            let added = line.add_fault(spec);
+            added.map_err(|problems| Failure::invalid(render(&problems, "--fault", spec)))?;
+        }
+    }
     let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
     let options = RunOptions {
         seed,
@@ -169,7 +175,8 @@ fn line(
     } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }
-    Ok(BenchLine { name: name.into(), port, wire, devices: vec![device] })
+    let (name, devices, faults) = (name.into(), vec![device], Vec::new());
+    Ok(BenchLine { name, port, wire, devices, faults })
 }
 
 fn port(args: &RunArgs) -> PortSpec {

@@ -16,7 +16,7 @@ use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
-use crate::wire::{Adu, Frame, NoiseCause};
+use crate::wire::{Adu, Coding, Frame, NoiseCause};
 
 /// How frames are told apart on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -149,6 +149,15 @@ impl Line {
             Framer::Rtu(rtu) => rtu.deadline(),
             Framer::Ascii(ascii) => ascii.deadline(),
             Framer::Mbap(_) => None,
+        }
+    }
+
+    /// How its frames are coded.
+    pub fn coding(&self) -> Coding {
+        match &self.framer {
+            Framer::Rtu(_) => Coding::Rtu,
+            Framer::Ascii(_) => Coding::Ascii,
+            Framer::Mbap(_) => Coding::Mbap,
         }
     }
 

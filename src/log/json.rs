@@ -4,7 +4,7 @@ use super::rows::{self, Item};
 use super::{text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Transaction, What};
+use crate::event::{Change, Event, Mishap, Transaction, What};
 use crate::model::Row;
 use crate::wire::hex::to_hex;
 use crate::words::{Refusal, Word};
@@ -62,6 +62,12 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
         }
         What::Moved(mode) => ("line_moved", json!({"mode": mode.to_string()})),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
+        What::Fault { rule, unit, mishap, hit } => {
+            let (name, kind) = bus.faults().told(*rule);
+            let mut fields = json!({"rule": name, "kind": kind.name(), "unit": unit, "hit": hit});
+            merge(&mut fields, mishap_fields(*mishap));
+            ("fault", fields)
+        }
         What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
     }
 }
@@ -111,6 +117,27 @@ fn item_fields(drive: &Drive, item: Item) -> Value {
             fields
         }
         Item::Bare(address, word) => json!({"address": address, "word": word}),
+    }
+}
+
+/// What was drawn or chosen; the kind says the rest.
+fn mishap_fields(mishap: Mishap) -> Value {
+    match mishap {
+        Mishap::BitsFlipped(bits) => json!({"bits": bits}),
+        Mishap::Truncated(bytes) | Mishap::Extra(bytes) | Mishap::Garbage(bytes) => {
+            json!({"bytes": bytes})
+        }
+        Mishap::Delayed(by) => json!({"ms": by.as_secs_f64() * 1000.0}),
+        Mishap::Split { at, gap } => json!({"at": at, "gap_ms": gap.as_millis() as u64}),
+        Mishap::WrongUnit(to) | Mishap::WrongFunction(to) => json!({"to": to}),
+        Mishap::Exception(code) => json!({"code": code}),
+        Mishap::RequestLost
+        | Mishap::ReplyLost
+        | Mishap::BadChecksum
+        | Mishap::Late
+        | Mishap::Duplicated
+        | Mishap::Busy
+        | Mishap::Echoed => json!({}),
     }
 }
 

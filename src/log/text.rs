@@ -3,7 +3,7 @@
 use super::{rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Transaction, What};
+use crate::event::{Change, Event, Mishap, Transaction, What};
 use crate::serial::Mode;
 use crate::wire::hex::to_hex;
 use crate::words::{Then, Word};
@@ -58,6 +58,10 @@ fn what(what: &What, bus: &Bus) -> String {
         }
         What::Moved(mode) => format!("the line is {mode} from now on"),
         What::Lost(why) => format!("stream closed, {}", why::header(*why)),
+        What::Fault { rule, unit, mishap, hit } => {
+            let (name, _) = bus.faults().told(*rule);
+            format!("fault {name}: {} (hit {hit})", mishap_text(*unit, *mishap))
+        }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
         }
@@ -121,6 +125,32 @@ fn who_is_here(unit: u8, bus: &Bus) -> String {
     match units.as_slice() {
         [only] => format!("here is unit {only}"),
         _ => format!("here are units {}", units.join(", ")),
+    }
+}
+
+fn mishap_text(unit: u8, mishap: Mishap) -> String {
+    let reply = format!("the reply of unit {unit}");
+    match mishap {
+        Mishap::RequestLost => format!("the request to unit {unit} was lost"),
+        Mishap::ReplyLost => format!("{reply} was lost"),
+        Mishap::BadChecksum => format!("{reply} left with a wrong checksum"),
+        Mishap::BitsFlipped(bits) => format!("{bits} bit(s) of {reply} were turned over"),
+        Mishap::Truncated(bytes) => format!("{bytes} byte(s) of {reply} were cut off"),
+        Mishap::Extra(bytes) => format!("{bytes} byte(s) followed {reply}"),
+        Mishap::Garbage(bytes) => format!("{bytes} byte(s) came before {reply}"),
+        Mishap::Delayed(by) => format!("{reply} leaves {} ms later", by.as_secs_f64() * 1000.0),
+        Mishap::Late => format!("{reply} waits for the next request"),
+        Mishap::Duplicated => format!("{reply} left twice"),
+        Mishap::Split { gap, .. } => {
+            format!("{reply} leaves in pieces, {} ms apart", gap.as_millis())
+        }
+        Mishap::WrongUnit(other) => format!("{reply} named unit {other}"),
+        Mishap::WrongFunction(other) => format!("{reply} named function {other:02X}"),
+        Mishap::Exception(code) => {
+            format!("exception {code:02X} answered for unit {unit}, nothing was executed")
+        }
+        Mishap::Busy => format!("unit {unit} was busy, nothing was executed"),
+        Mishap::Echoed => format!("the request to unit {unit} came back"),
     }
 }
 

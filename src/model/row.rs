@@ -1,6 +1,7 @@
 //! Compiled rows and the map that finds them by address.
 
 use crate::units::{Unit, parse_integer};
+use crate::wire::Span;
 use crate::words::RowId;
 use std::collections::BTreeMap;
 
@@ -178,6 +179,14 @@ impl Map {
     /// The windows.
     pub fn windows(&self) -> &[Window] {
         &self.windows
+    }
+
+    /// The addresses of a row, through each window that shows it.
+    pub fn spans(&self, id: RowId) -> Vec<Span> {
+        let row = self.row(id);
+        let shown = self.windows.iter().filter(|window| window.shows(row.at));
+        let span = |window: &Window| Span::new(window.base.checked_add(row.at)?, row.kind.words());
+        shown.filter_map(span).collect()
     }
 
     /// What stands at `address`.

@@ -2,8 +2,10 @@
 
 mod axis;
 mod chain;
+mod choice;
 mod compile;
 mod homing;
+mod limits;
 mod names;
 mod orders;
 mod quantities;
@@ -11,6 +13,7 @@ mod segment_rows;
 mod segment_signals;
 mod segments;
 mod used;
+mod wired;
 
 pub use chain::{ChainRules, Link};
 pub(super) use compile::compile;

@@ -84,7 +84,7 @@ type Task = Pin<Box<dyn Future<Output = ()>>>;
 ///
 /// # Errors
 /// If a port or a file can't be opened; then nothing was served.
-pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
+pub async fn run(bench: Bench, mut options: RunOptions) -> Result<(), OpenError> {
     // Before anybody can learn that the run has begun.
     let mut stop = Stop::listen().map_err(OpenError::Signals)?;
     if let Some(path) = &options.ready_file {
@@ -95,11 +95,11 @@ pub async fn run(bench: Bench, options: RunOptions) -> Result<(), OpenError> {
     let logger = logger
         .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
     let log = Arc::new(Mutex::new(logger));
-    let store = options.store.map(|store| Arc::new(Mutex::new(store)));
+    let store = options.store.take().map(|store| Arc::new(Mutex::new(store)));
     let clock = Clock::start(options.rate);
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
     for line in &bench.lines {
-        let (task, endpoint) = open(line, clock, &log, store.as_ref(), &options.base)?;
+        let (task, endpoint) = open(line, clock, &log, store.as_ref(), &options)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
@@ -141,9 +141,9 @@ fn open(
     clock: Clock,
     log: &Arc<Mutex<Logger>>,
     store: Option<&Arc<Mutex<Store>>>,
-    base: &Path,
+    options: &RunOptions,
 ) -> Result<(Task, Endpoint), OpenError> {
-    let (bus, name) = (line.bus(), line.name.clone());
+    let (bus, name) = (line.bus(options.seed), line.name.clone());
     let (wire, settings) = (line.wire, line.wire.mode.settings);
     let mut endpoint = endpoint(line, &bus);
     if let Some(store) = store {
@@ -154,7 +154,7 @@ fn open(
     let refused = |error: io::Error| OpenError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {
-            let link = link.as_ref().map(|link| base.join(link));
+            let link = link.as_ref().map(|link| options.base.join(link));
             let pty = open_pty(link.as_deref(), settings).map_err(refused)?;
             endpoint.path = Some(pty.path().display().to_string());
             endpoint.link = pty.link().map(|link| link.display().to_string());

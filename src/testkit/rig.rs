@@ -18,6 +18,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Rig {
     line: BenchLine,
+    framing: Framing,
+    seed: u64,
     bus: Bus,
     link: LinkId,
     now: Instant,
@@ -51,7 +53,8 @@ impl Rig {
         })?;
         let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
         let (name, port) = ("line".into(), PortSpec::Pty(None));
-        Ok(Self::line(BenchLine { name, port, wire, devices: vec![device] }))
+        let (devices, faults) = (vec![device], Vec::new());
+        Ok(Self::line(BenchLine { name, port, wire, devices, faults }))
     }
 
     /// The first line of a bench file. Its port is not opened.
@@ -59,21 +62,22 @@ impl Rig {
     /// # Errors
     /// Everything that is wrong with the file.
     pub fn bench(text: &str, library: &dyn Library) -> Result<Self, Vec<Problem>> {
-        let Bench { lines, .. } = crate::bench::parse(text, library)?;
-        let line = lines.into_iter().next();
-        Ok(Self::line(line.expect("a bench that was read has a line")))
+        let Bench { seed, lines } = crate::bench::parse(text, library)?;
+        let line = lines.into_iter().next().expect("a bench that was read has a line");
+        let framing = line.wire.framing(1.0);
+        Ok(Self::framed(line, framing, seed.unwrap_or(0)))
     }
 
     /// A line as a bench describes it, with its framing, initialised.
     pub fn line(line: BenchLine) -> Self {
         let framing = line.wire.framing(1.0);
-        Self::framed(line, framing)
+        Self::framed(line, framing, 0)
     }
 
     /// The same line with another framing. Its clock starts anew.
     #[must_use]
     pub fn with_framing(self, framing: Framing) -> Self {
-        Self::framed(self.line, framing)
+        Self::framed(self.line, framing, self.seed)
     }
 
     /// The same line switched on anew, with what its drives or those of another rig have kept: the text of
@@ -98,11 +102,26 @@ impl Rig {
         state.text()
     }
 
-    fn framed(line: BenchLine, framing: Framing) -> Self {
-        let mut bus = line.bus();
+    /// The same line with another seed; without one it is 0. Its clock starts anew.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self::framed(self.line, self.framing, seed)
+    }
+
+    /// The same line with a fault rule more, in compact form (`lose_reply:every=10`). Its clock starts anew.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the rule.
+    pub fn with_fault(mut self, spec: &str) -> Result<Self, Vec<Problem>> {
+        self.line.add_fault(spec)?;
+        Ok(Self::framed(self.line, self.framing, self.seed))
+    }
+
+    fn framed(line: BenchLine, framing: Framing, seed: u64) -> Self {
+        let mut bus = line.bus(seed);
         let link = bus.open(framing);
-        let now = Instant::ZERO;
-        let mut rig = Self { line, bus, link, now, events: Vec::new(), log: Vec::new() };
+        let (now, events, log) = (Instant::ZERO, Vec::new(), Vec::new());
+        let mut rig = Self { line, framing, seed, bus, link, now, events, log };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
         let ready = ready.max().unwrap_or_default();
         rig.advance(ready);
@@ -116,7 +135,7 @@ impl Rig {
 
     /// The same drives on a bus of their own, just switched on.
     pub fn fresh_bus(&self) -> Bus {
-        self.line.bus()
+        self.line.bus(self.seed)
     }
 
     /// The time.
@@ -165,10 +184,22 @@ impl Rig {
         self.drain()
     }
 
-    /// Does something to the drives.
+    /// Puts a fault rule in compact form on the line from now on.
     ///
     /// # Errors
-    /// If there is no such drive, terminal or alarm.
+    /// The first thing that is wrong with it.
+    pub fn add_fault(&mut self, spec: &str) -> Result<(), String> {
+        let taken: Vec<_> = self.bus.faults().names().collect();
+        let rules = self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
+        rules.into_iter().try_for_each(|rule| {
+            self.command(Command::AddFault(rule)).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Does something to the drives or to the weather.
+    ///
+    /// # Errors
+    /// If there is no such drive, terminal, alarm or rule.
     pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
         let reply = self.bus.command(self.now, command);
         self.drain();

@@ -5,6 +5,7 @@
 //! line 19200 8N1 strict                # optional; `ascii`, `strict`
 //! option crc_error exception           # optional, for the model line above
 //! set C003 20                          # optional, likewise; also `switches 5`, `terminal I1`, `machine {home: [50, 60]}`
+//! fault lose_reply:count=1,from=30     # optional: a fault rule on the line
 //!
 //! > 03 1003 0001                       # unit and checksum are added; `>2 03 ...` asks unit 2
 //! < 03 02 0014
@@ -15,9 +16,9 @@
 //! << 01 83 7F 00 D0
 //! >> ":0103100300018"                  # characters, CR LF is added
 //! << -                                 # silence
-//! + 200ms                              # time passes
+//! + 200ms                              # time passes; what comes meanwhile is for a `<` or `<<` line
 //! ? alarm off  C003 30                 # signals, quantities and registers of the drive
-//! ! power_cycle                        # also `terminal I1 on`, `raise overload`
+//! ! power_cycle                        # also `terminal I1 on`, `raise overload`, `fault SPEC`, `no_fault NAME`
 //! log refused, range 0..50             # the log says so, later than what the last such line found
 //! ```
 //!

@@ -2,7 +2,7 @@
 
 use super::PDU_MAX;
 use std::fmt;
-use std::ops::Deref;
+use std::ops::{Deref, DerefMut};
 
 /// Up to `N` bytes, held in place: an answer costs no allocation.
 #[derive(Clone, Copy)]
@@ -30,6 +30,11 @@ impl<const N: usize> Inline<N> {
         inline
     }
 
+    /// Cuts off what stands behind the first `len` bytes.
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len as u16);
+    }
+
     /// Appends `byte`. Frames and PDUs are sized for the longest there is, so running over is a bug.
     pub fn push(&mut self, byte: u8) {
         self.bytes[usize::from(self.len)] = byte;
@@ -55,6 +60,12 @@ impl<const N: usize> Deref for Inline<N> {
 
     fn deref(&self) -> &[u8] {
         &self.bytes[..usize::from(self.len)]
+    }
+}
+
+impl<const N: usize> DerefMut for Inline<N> {
+    fn deref_mut(&mut self) -> &mut [u8] {
+        &mut self.bytes[..usize::from(self.len)]
     }
 }
 

@@ -29,6 +29,17 @@ pub mod function {
     pub const EXCEPTION: u8 = 0x80;
 }
 
+/// How frames are coded on a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coding {
+    /// Bytes with a CRC.
+    Rtu,
+    /// Characters with an LRC.
+    Ascii,
+    /// Bytes behind a header, without a checksum.
+    Mbap,
+}
+
 /// The unit address that every drive hears and none answers.
 pub const BROADCAST: u8 = 0;
 

@@ -37,6 +37,17 @@ pub enum Until {
     Collision,
 }
 
+impl Until {
+    /// The change of a switch in it.
+    pub fn edge(self) -> Option<Edge> {
+        match self {
+            Self::Edge(edge) => Some(edge),
+            Self::Index(edge) => edge,
+            Self::Collision => None,
+        }
+    }
+}
+
 /// A change of a switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
@@ -98,6 +109,13 @@ pub struct Method {
     pub on: Steps,
     /// Does an index pulse refine the origin, where the drive is set so?
     pub index: bool,
+}
+
+impl Method {
+    /// Every step that it may take.
+    pub fn all_steps(&self) -> impl Iterator<Item = Step> + '_ {
+        [&self.steps, &self.at_limit, &self.on].into_iter().flat_map(Steps::iter)
+    }
 }
 
 words! {

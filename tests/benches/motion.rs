@@ -135,7 +135,7 @@ fn bus(hour: &Hour) -> (Bus, u8) {
     let spec = DeviceSpec {
         set: hour.set.iter().map(|(row, value)| ((*row).into(), *value)).collect(),
         terminals: hour.terminals.iter().map(|it| (*it).into()).collect(),
-        machine: machine(&raw).expect("a machine"),
+        machine: machine(&raw, &model.wiring).expect("a machine"),
         start: raw.start.into(),
         ..DeviceSpec::default()
     };

@@ -14,7 +14,7 @@ fn port() -> (Bus, LinkId) {
 }
 
 fn port_of(model: &str) -> (Bus, LinkId) {
-    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus();
+    let mut bus = line_of(text_of(model), &[], &DeviceSpec::default()).bus(0);
     let link = bus.open(Framing::Mbap);
     bus.advance_to(Instant::from_millis(2000));
     drain(&mut bus);

@@ -1,6 +1,8 @@
 //! Homing and limits of an axis.
 
-use serde::Deserialize;
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer};
+use serde_yaml::Value;
 use std::collections::BTreeMap;
 
 #[cfg(feature = "cli")]
@@ -36,9 +38,8 @@ pub struct RawHoming {
 }
 
 /// Always the same, or as a row says.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "one word, or {register: ROW, codes: {0: word, ...}}")]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawChoice<T> {
     /// As a row says.
     Row(RawChosen<T>),
@@ -46,9 +47,23 @@ pub enum RawChoice<T> {
     Fixed(T),
 }
 
+/// Told apart by their keys, so that what is wrong with one is not told of the other.
+impl<'de, T: DeserializeOwned> Deserialize<'de> for RawChoice<T> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let value = Value::deserialize(from)?;
+        let by_row = ["register", "codes"].iter().any(|key| value.get(key).is_some());
+        let read = match by_row {
+            true => RawChosen::deserialize(value).map(Self::Row),
+            false => T::deserialize(value).map(Self::Fixed),
+        };
+        read.map_err(D::Error::custom)
+    }
+}
+
 /// A row, or one hex digit of it, whose values stand for something.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct RawChosen<T> {
     /// The row.
     pub register: String,
@@ -114,6 +129,7 @@ pub enum RawWay {
 /// What happens when the origin is found.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct RawFinish {
     /// Go on by `home.way`? Default no.
     #[serde(default)]

@@ -6,9 +6,7 @@ use super::compile::Wirer;
 use crate::model::raw::{RawAxis, RawCounts, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::Dimension;
-use crate::words::{
-    Action, AlarmCause, Input, Method, Output, Quantity, Setting, Steps, Until, Word,
-};
+use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Word};
 
 /// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
 struct Kind {
@@ -87,7 +85,8 @@ impl Wirer<'_> {
         for kind in &KINDS {
             let by_input = kind.inputs.iter().find(|it| inputs.contains(it)).map(|it| it.name());
             let by_action = kind.action.filter(|it| actions.contains(it)).map(Word::name);
-            let by = by_input.or(by_action);
+            let homes = kind.action == Some(Action::HomeStart) && self.homes_at_first_enable();
+            let by = by_input.or(by_action).or(homes.then(|| HomeStarter::FirstEnable.name()));
             self.settings_fit(kind, by);
             starter = starter.or(by);
         }
@@ -104,10 +103,10 @@ impl Wirer<'_> {
         if starter.is_none() {
             self.signals_without_motion(&inputs, &actions);
         }
-        self.homing_fits(&inputs, &actions);
         let none = RawSegments::default();
         let segments = raw.map_or(&none, |raw| &raw.segments);
         self.segments(segments, &path.key("segments"), &inputs);
+        self.homing_starts(&inputs, &actions);
         let Some(raw) = raw else { return };
         if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
             self.wiring.axis.counts_per_rev = counts;
@@ -166,48 +165,6 @@ impl Wirer<'_> {
         }
     }
 
-    /// A homing has a starter, a starter has a homing, and what shows or needs one has one.
-    fn homing_fits(&mut self, inputs: &[Input], actions: &[Action]) {
-        let input = inputs.contains(&Input::HomeStart);
-        let starts = input || actions.contains(&Action::HomeStart);
-        let homing = self.wiring.homing.is_some();
-        let signals = Path::root().key("signals");
-        if starts && !homing {
-            let what = "`home_start` is wired, and there is no `homing`";
-            self.problems.push(Problem::key(signals.clone(), what).advise("add `homing`"));
-        }
-        if homing && !starts {
-            let what = "`homing` changes nothing: nothing starts it";
-            let problem = Problem::key(Path::root().key("homing"), what);
-            self.problems.push(problem.advise("wire `home_start`, or leave it out"));
-        }
-        let methods = self.wiring.homing.iter().flat_map(|it| it.methods.values());
-        let looks = |method: &Method| {
-            let steps = [&method.steps, &method.at_limit, &method.on].into_iter();
-            steps.flat_map(Steps::iter).any(|step| match step.until {
-                Until::Edge(edge) | Until::Index(Some(edge)) => edge.signal == Input::HomeSwitch,
-                Until::Index(None) | Until::Collision => false,
-            })
-        };
-        let looked_for = methods.into_iter().any(looks);
-        let shown = self.is_shown(Output::HomeDone);
-        let useless = [
-            (Input::HomeSwitch.name(), inputs.contains(&Input::HomeSwitch) && !looked_for),
-            (Output::HomeDone.name(), shown && !homing),
-        ];
-        for (name, _) in useless.into_iter().filter(|(_, is)| *is) {
-            let what = format!("`{name}` changes nothing: no homing goes by it");
-            self.problems.push(Problem::key(signals.clone(), what).advise("leave it out"));
-        }
-        let deviation = self.wiring.axis.setting(Setting::Deviation).is_some();
-        if deviation && self.wiring.alarm(AlarmCause::PositionDeviation).is_none() {
-            let what =
-                "`limit.deviation` changes nothing: alarm `position_deviation` has no number";
-            let path = Path::root().key("quantities").key(Setting::Deviation.name());
-            self.problems.push(Problem::key(path, what).advise("add it to `alarms`"));
-        }
-    }
-
     /// What ends or shows a motion, where there is none.
     fn signals_without_motion(&mut self, inputs: &[Input], actions: &[Action]) {
         let path = Path::root().key("signals");
@@ -219,6 +176,13 @@ impl Wirer<'_> {
         let shown = outputs.filter(|it| self.is_shown(*it)).map(Word::name);
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
         names.into_iter().for_each(|name| self.without_motion(name, &path));
+        let path = Path::root().key("quantities");
+        let settings = [Setting::SoftLimitPos, Setting::SoftLimitNeg, Setting::Deviation];
+        for setting in settings {
+            if self.wiring.axis.setting(setting).is_some() {
+                self.without_motion(setting.name(), &path.key(setting.name()));
+            }
+        }
         let speed = super::Shows::Quantity(Quantity::SpeedActual);
         if self.wiring.shows.iter().flatten().any(|it| *it == speed) {
             let name = Quantity::SpeedActual.name();
@@ -230,32 +194,5 @@ impl Wirer<'_> {
         let what = format!("`{name}` changes nothing: nothing starts a motion");
         let advice = "wire what starts it, or leave it out";
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
-    }
-
-    pub(super) fn inputs_wired(&self) -> Vec<Input> {
-        let wiring = &self.wiring;
-        let machine = wiring.machine_inputs.iter().copied();
-        let terminals = wiring.input_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
-        let words = wiring.input_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
-        let bits = wiring.input_bits.iter().flat_map(|(_, bits)| bits).map(|it| it.1);
-        terminals.chain(words).chain(bits).chain(machine).collect()
-    }
-
-    fn actions_wired(&self) -> Vec<Action> {
-        let commands = self.wiring.commands.iter().flat_map(|it| &it.actions).map(|it| it.1);
-        let triggers = self.wiring.triggers.iter().flat_map(|it| &it.actions).map(|it| it.1);
-        commands.chain(triggers).collect()
-    }
-
-    pub(super) fn is_shown(&self, output: Output) -> bool {
-        let wiring = &self.wiring;
-        let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
-        let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
-        let bits = wiring.shows.iter().flatten().filter_map(|it| match it {
-            super::Shows::Bits(bits) => Some(bits),
-            _ => None,
-        });
-        let bits = bits.flatten().map(|it| it.1);
-        terminals.chain(words).chain(bits).any(|it| it.signal == output)
     }
 }

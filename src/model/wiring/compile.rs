@@ -31,9 +31,9 @@ pub(in crate::model) fn compile(
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
     wirer.line(&raw.line);
     wirer.servo(raw);
-    raw.limits.iter().for_each(|limits| wirer.limits(limits));
-    raw.homing.iter().for_each(|homing| wirer.homing(homing));
     wirer.alarms(raw);
+    raw.homing.iter().for_each(|homing| wirer.homing(homing));
+    wirer.limits(raw.limits.as_ref());
     wirer.axis(raw.axis.as_ref());
     wirer.wiring
 }
@@ -67,7 +67,12 @@ impl Wirer<'_> {
         });
         self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
         for (i, name) in raw.machine.iter().enumerate() {
-            let signal = self.word::<Input>(name, "switch", &path.key("machine").index(i));
+            let path = path.key("machine").index(i);
+            if raw.machine[..i].contains(name) {
+                self.problems.push(Problem::value(path, format!("`{name}` stands here twice")));
+                continue;
+            }
+            let signal = self.switch(name, &path);
             self.wiring.machine_inputs.extend(signal);
         }
         if let Some(raw) = &raw.terminals {

@@ -11,7 +11,11 @@ pub(super) fn problem(path: Path, message: &str) -> Problem {
     if let Some(key) = message.strip_prefix("missing field ") {
         return Problem::value(path, format!("key {key} is missing"));
     }
-    if let Some((name, known)) = variant(message) {
+    if let Some((name, known)) = one_of(message, "unknown field `") {
+        let advice = suggest::did_you_mean(name, known);
+        return Problem::value(path, format!("there is no key `{name}` here")).advise_if(advice);
+    }
+    if let Some((name, known)) = one_of(message, "unknown variant `") {
         let what = format!("`{name}` is none of {}", known.join(", "));
         let advice = suggest::did_you_mean(name, known);
         return Problem::value(path, what).advise_if(advice);
@@ -28,9 +32,9 @@ pub(super) fn problem(path: Path, message: &str) -> Problem {
     Problem::value(path, what).advise_if(advice)
 }
 
-/// Of ``unknown variant `x`, expected one of `a`, `b` ``: `x` and `a`, `b`.
-fn variant(message: &str) -> Option<(&str, Vec<&str>)> {
-    let (name, known) = message.strip_prefix("unknown variant `")?.split_once("`, expected ")?;
+/// Of ``unknown variant `x`, expected one of `a`, `b` ``, which begins so: `x` and `a`, `b`.
+fn one_of<'a>(message: &'a str, begins: &str) -> Option<(&'a str, Vec<&'a str>)> {
+    let (name, known) = message.strip_prefix(begins)?.split_once("`, expected ")?;
     Some((name, known.split('`').skip(1).step_by(2).collect()))
 }
 
@@ -83,6 +87,10 @@ mod tests {
             (
                 "unknown variant `u61`, expected one of `u16`, `i16`",
                 "`u61` is none of u16, i16 (did you mean `u16`?)",
+            ),
+            (
+                "unknown field `digt`, expected one of `register`, `digit`",
+                "there is no key `digt` here (did you mean `digit`?)",
             ),
             ("unknown variant `x`, expected `none`", "`x` is none of none"),
             (

@@ -17,7 +17,11 @@ pub async fn serve_stream(
     loop {
         while let Some(send) = line.next_send() {
             match send {
-                Send::Frame(_, frame) => stream.write_all(&frame).await?,
+                // A reply may have been held until nobody was there any more.
+                Send::Frame(_, frame) => match stream.write_all(&frame).await {
+                    Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+                    written => written?,
+                },
                 Send::Close(_) => return Ok(()),
                 Send::Move(_) => {}
             }

@@ -39,7 +39,13 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
         let matched = match_line(device, wire.mode, true);
         matched.map_err(|what| Failure { line: drive.line, what })?;
     }
-    Ok(BenchLine { name: "line".into(), port: PortSpec::Pty(None), wire, devices })
+    let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
+    let mut line = BenchLine { name, port, wire, devices, faults };
+    for (number, spec) in &script.faults {
+        let added = line.add_fault(spec);
+        added.map_err(|problems| Failure { line: *number, what: problems[0].to_string() })?;
+    }
+    Ok(line)
 }
 
 fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
@@ -49,7 +55,8 @@ fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
         set: drive.set.clone(),
         switches: drive.switches,
         terminals: drive.terminals.clone(),
-        machine: machine(&drive.machine).map_err(|problems| problems[0].what.clone())?,
+        machine: machine(&drive.machine, &model.wiring)
+            .map_err(|problems| problems[0].what.clone())?,
         start: drive.machine.start.into(),
         position: drive.machine.position.into(),
     };
@@ -71,9 +78,7 @@ impl Player {
             return Ok(());
         }
         match self.pending.take() {
-            Some((Some(echo), got)) if got != echo => {
-                Err(format!("expected an echo\n  want {}\n  got  {}", to_hex(&echo), to_hex(&got)))
-            }
+            Some((Some(echo), got)) => same(echo, got),
             _ => Ok(()),
         }
     }
@@ -102,9 +107,10 @@ impl Player {
                 let got = self.take_answer()?;
                 same(want.clone().unwrap_or_default(), got)?;
             }
+            // What comes meanwhile is looked at like an answer: nothing, unless the next line says otherwise.
             Step::Wait(by) => {
                 let got = self.rig.advance(*by);
-                same(Vec::new(), got)?;
+                self.pending = Some((Some(Vec::new()), got));
             }
             Step::Look(unit, checks) => {
                 let drive = match unit {
@@ -144,7 +150,13 @@ impl Player {
                 let index = index.ok_or(format!("no terminal `{name}`"))? as u8;
                 Command::Terminal { drive, index, signal: *level == "on" }
             }
-            _ => return Err("write power_cycle, raise CAUSE, or terminal NAME on|off".into()),
+            ["fault", spec] => return self.rig.add_fault(spec),
+            ["no_fault", name] => Command::RemoveFault((*name).into()),
+            _ => {
+                let known =
+                    "power_cycle, raise CAUSE, terminal NAME on|off, fault SPEC, no_fault NAME";
+                return Err(format!("write {known}"));
+            }
         };
         self.rig.command(command).map_err(|error| error.to_string())
     }

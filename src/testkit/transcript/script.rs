@@ -20,6 +20,8 @@ pub struct Script {
     pub ascii: Option<bool>,
     /// Frames end by silence only.
     pub strict: bool,
+    /// Fault rules in compact form, each with its line.
+    pub faults: Vec<(usize, String)>,
     /// What happens, each with its line.
     pub steps: Vec<(usize, Step)>,
 }
@@ -138,6 +140,10 @@ impl Script {
                         _ => return Err(format!("no flag `{flag}`: strict, ascii")),
                     }
                 }
+                return Ok(());
+            }
+            ("fault", [spec]) => {
+                self.faults.push((number, (*spec).into()));
                 return Ok(());
             }
             _ => {}

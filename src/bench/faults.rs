@@ -1,0 +1,74 @@
+//! Fault rules of a line: read for the drives that are on it.
+
+use super::{BenchLine, Device, PortSpec};
+use crate::fault::{self, Faults, NoRow, Rule, Site};
+use crate::problem::{Problem, suggest};
+use crate::wire::Span;
+
+/// A line as its fault rules see it.
+pub(super) struct Drives<'a> {
+    pub port: &'a PortSpec,
+    pub devices: &'a [Device],
+}
+
+impl Site for Drives<'_> {
+    fn is_tcp(&self) -> bool {
+        matches!(self.port, PortSpec::Tcp(_))
+    }
+
+    /// Where all drives that know the name have the row. One place must be right for all of them: a rule
+    /// doesn't ask which drive a request is for.
+    fn spans(&self, name: &str) -> Result<Vec<Span>, NoRow> {
+        let maps = self.devices.iter().map(|device| &device.model.map);
+        let mut places = maps.clone().filter_map(|map| {
+            let (id, _) = map.rows().find(|(_, row)| row.id == name)?;
+            Some(map.spans(id))
+        });
+        let Some(first) = places.next() else {
+            let ids = maps.flat_map(|map| map.rows().map(|(_, row)| row.id.as_str()));
+            let advice = suggest::did_you_mean(name, ids);
+            let what = format!("no drive of this line has a register `{name}`");
+            return Err(NoRow { what, advice });
+        };
+        match places.all(|other| other == first) {
+            true => Ok(first),
+            false => {
+                let what = format!("the drives of this line have `{name}` at different addresses");
+                Err(NoRow { what, advice: Some("give the address".into()) })
+            }
+        }
+    }
+}
+
+impl BenchLine {
+    /// Reads the compact form of a fault rule (`lose_reply:every=10`) for this line.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, each with its place in `spec`.
+    pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<Vec<Rule>, Vec<Problem>> {
+        let site = Drives { port: &self.port, devices: &self.devices };
+        fault::parse(spec, &site, taken)
+    }
+
+    /// Puts such a rule behind those that the line has.
+    ///
+    /// # Errors
+    /// As [`fault`](Self::fault).
+    pub fn add_fault(&mut self, spec: &str) -> Result<(), Vec<Problem>> {
+        let taken: Vec<_> = self.faults.iter().map(|rule| rule.name.as_str()).collect();
+        let rules = self.fault(spec, &taken)?;
+        self.faults.extend(rules);
+        Ok(())
+    }
+
+    /// The rules, none of which has acted yet.
+    pub(super) fn weather(&self, seed: u64) -> Faults {
+        let mut faults = Faults::new(seed, &self.name);
+        for rule in &self.faults {
+            // Names are unique once they are read.
+            let added = faults.add(rule.clone());
+            debug_assert!(added);
+        }
+        faults
+    }
+}

@@ -1,0 +1,313 @@
+//! From a rule as it is written to a [`Rule`], or to everything that is wrong with it.
+//!
+//! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
+
+use super::raw::{RawFault, RawFunctions, RawMillis, RawRegister};
+use super::{Act, Kind, Rule, When, spec};
+use crate::problem::{Path, Problem};
+use crate::rng::Chance;
+use crate::time::{Duration, Instant};
+use crate::units::parse_integer;
+use crate::wire::{BROADCAST, Span};
+use std::ops::RangeInclusive;
+
+/// What a rule has to know of its line when it is read.
+pub trait Site {
+    /// Is it Modbus TCP, without checksums and wires?
+    fn is_tcp(&self) -> bool;
+
+    /// Where the row called `name` can be reached.
+    ///
+    /// # Errors
+    /// Why it can't be told.
+    fn spans(&self, name: &str) -> Result<Vec<Span>, NoRow>;
+}
+
+/// Why a row's name gives no addresses.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoRow {
+    /// Why.
+    pub what: String,
+    /// What to do.
+    pub advice: Option<String>,
+}
+
+/// Compiles the rule at `path` for `site`, where rules called `taken` stand already. A preset gives several
+/// rules. What is wrong goes to `problems`; then what comes back is not to be used.
+pub fn compile(
+    raw: &RawFault,
+    path: &Path,
+    site: &dyn Site,
+    taken: &[&str],
+    problems: &mut Vec<Problem>,
+) -> Vec<Rule> {
+    let mut reader = Reader { raw, path, site, problems };
+    reader.refuse_idle_keys();
+    let name = reader.name(taken);
+    let when = reader.when();
+    let Some(specs) = raw.act.preset() else {
+        return reader.act().map(|act| Rule { name, when, act }).into_iter().collect();
+    };
+    let mut rules: Vec<Rule> = Vec::new();
+    for spec in specs {
+        let names: Vec<_> = rules.iter().map(|it| it.name.as_str()).collect();
+        for rule in spec::parse(spec, site, &names).unwrap_or_default() {
+            let own = rule.when;
+            let when = When { chance: own.chance, ..when.clone() };
+            rules.push(Rule { name: rule.name, when, act: rule.act });
+        }
+    }
+    rules.iter_mut().for_each(|rule| rule.name = format!("{name}.{}", rule.name));
+    rules
+}
+
+struct Reader<'a> {
+    raw: &'a RawFault,
+    path: &'a Path,
+    site: &'a dyn Site,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl Reader<'_> {
+    fn refuse(&mut self, key: &str, what: impl Into<String>, advice: Option<&str>) {
+        let problem = Problem::value(self.path.key(key), what);
+        self.problems.push(problem.advise_if(advice.map(str::to_owned)));
+    }
+
+    /// A key that changes nothing for its kind, and a kind that changes nothing on its line.
+    fn refuse_idle_keys(&mut self) {
+        let raw = self.raw;
+        let kind = raw.act;
+        let own = [
+            ("at", raw.at.is_some()),
+            ("bits", raw.bits.is_some()),
+            ("bytes", raw.bytes.is_some()),
+            ("code", raw.code.is_some()),
+            ("gap_ms", raw.gap_ms.is_some()),
+            ("ms", raw.ms.is_some()),
+            ("to", raw.to.is_some()),
+        ];
+        for (key, _) in own.iter().filter(|(key, given)| *given && !kind.keys().contains(key)) {
+            let with = Kind::ALL.iter().filter(|kind| kind.keys().contains(key));
+            let with: Vec<_> = with.map(|kind| kind.name()).collect();
+            let what = format!("`{key}` changes nothing for `{}`", kind.name());
+            let advice = format!("it goes with {}", with.join(", "));
+            self.problems.push(Problem::key(self.path.key(key), what).advise(advice));
+        }
+        let turns = [
+            ("skip", raw.skip.is_some()),
+            ("every", raw.every.is_some()),
+            ("probability", raw.probability.is_some()),
+            ("count", raw.count.is_some()),
+        ];
+        for (key, _) in turns.iter().filter(|(_, given)| *given && kind.preset().is_some()) {
+            let what = format!("a preset takes no `{key}`");
+            let problem = Problem::key(self.path.key(key), what);
+            self.problems.push(problem.advise("write out the rules that you want"));
+        }
+        if let Some(why) = kind.impossible_on_tcp().filter(|_| self.site.is_tcp()) {
+            self.refuse("do", why, None);
+        }
+        if raw.unit == Some(BROADCAST) && !kind.takes_broadcasts() {
+            let what = format!("nobody replies to a broadcast, so `{}` has no effect", kind.name());
+            self.refuse("unit", what, None);
+        }
+    }
+
+    fn name(&mut self, taken: &[&str]) -> String {
+        let free = |name: &str| {
+            let below = format!("{name}.");
+            !taken.iter().any(|it| *it == name || it.starts_with(&below))
+        };
+        let Some(name) = &self.raw.name else {
+            let kind = self.raw.act.name();
+            let mut numbered = (2..).map(|n| format!("{kind}-{n}"));
+            return match free(kind) {
+                true => kind.to_owned(),
+                false => numbered.find(|name| free(name)).unwrap_or_default(),
+            };
+        };
+        let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
+        if name.is_empty() || !name.chars().all(plain) {
+            self.refuse("name", "a name has letters, digits, `_`, `-` and `.`", None);
+        } else if !free(name) {
+            let what = format!("there is a rule `{name}` on this line already");
+            self.refuse("name", what, Some("give each rule its own `name`"));
+        }
+        name.clone()
+    }
+
+    fn when(&mut self) -> When {
+        let raw = self.raw;
+        let unlimited = 1..=u64::MAX;
+        if let Some(probability) = raw.probability.filter(|it| !(*it > 0.0 && *it <= 1.0)) {
+            let what = format!("a probability is above 0 and at most 1, not {probability}");
+            self.refuse("probability", what, None);
+        }
+        When {
+            unit: raw.unit,
+            functions: self.functions(),
+            spans: self.spans(),
+            from: self.instant("from", raw.from).unwrap_or(Instant::ZERO),
+            until: self.until(),
+            skip: raw.skip.unwrap_or(0),
+            every: self.within("every", raw.every, unlimited.clone()).unwrap_or(1).max(1),
+            chance: raw.probability.map(Chance::new),
+            count: self.within("count", raw.count, unlimited),
+        }
+    }
+
+    fn functions(&mut self) -> Vec<u8> {
+        let functions = match &self.raw.function {
+            None => return Vec::new(),
+            Some(RawFunctions::One(function)) => vec![*function],
+            Some(RawFunctions::Many(functions)) => functions.clone(),
+        };
+        if functions.is_empty() {
+            self.refuse("function", "an empty list holds for no request", Some("leave it out"));
+        }
+        for function in &functions {
+            self.within("function", Some(*function), 1..=0x7F);
+        }
+        functions
+    }
+
+    fn spans(&mut self) -> Vec<Span> {
+        let name = match &self.raw.register {
+            None => return Vec::new(),
+            Some(RawRegister::Address(address)) => return vec![Span::one(*address)],
+            Some(RawRegister::Name(name)) => name,
+        };
+        let unknown = match self.site.spans(name) {
+            Ok(spans) => return spans,
+            Err(unknown) => unknown,
+        };
+        let address = |text: &str| u16::try_from(parse_integer(text.trim())?).ok();
+        if let Some(address) = address(name) {
+            return vec![Span::one(address)];
+        }
+        let ends = name.split_once('-').and_then(|(a, b)| Some((address(a)?, address(b)?)));
+        match ends {
+            Some((first, last)) if first <= last => {
+                Span::new(first, (last - first).saturating_add(1)).into_iter().collect()
+            }
+            Some(_) => {
+                self.refuse("register", "a span goes from the lower address to the higher", None);
+                Vec::new()
+            }
+            None => {
+                self.refuse("register", unknown.what, unknown.advice.as_deref());
+                Vec::new()
+            }
+        }
+    }
+
+    fn instant(&mut self, key: &str, seconds: Option<f64>) -> Option<Instant> {
+        let seconds = seconds?;
+        match Duration::try_from_secs_f64(seconds) {
+            Ok(after) => Some(Instant::ZERO + after),
+            Err(_) => {
+                self.refuse(key, format!("{seconds} s is no time of a run"), None);
+                None
+            }
+        }
+    }
+
+    fn until(&mut self) -> Option<Instant> {
+        let (from, until) = (self.raw.from.unwrap_or(0.0), self.raw.until?);
+        let end = self.instant("until", Some(until))?;
+        if until <= from {
+            let what = format!("there is no time from {from} s until {until} s");
+            self.refuse("until", what, None);
+        }
+        Some(end)
+    }
+
+    fn act(&mut self) -> Option<Act> {
+        let raw = self.raw;
+        Some(match raw.act {
+            Kind::LoseRequest => Act::LoseRequest,
+            Kind::LoseReply => Act::LoseReply,
+            Kind::BadCrc => Act::BadCrc,
+            // The shortest reply has 24 bits that may be turned over, on TCP.
+            Kind::FlipBits => {
+                Act::FlipBits { bits: self.within("bits", raw.bits, 1..=16).unwrap_or(1) }
+            }
+            Kind::Truncate => Act::Truncate { bytes: self.bytes() },
+            Kind::Extra => Act::Extra { bytes: self.bytes() },
+            Kind::Garbage => Act::Garbage { bytes: self.bytes() },
+            Kind::Delay => self.delay()?,
+            Kind::Late => Act::Late,
+            Kind::Duplicate => Act::Duplicate,
+            Kind::Split => Act::Split {
+                at: self.within("at", raw.at, 1..=512),
+                gap_ms: self.within("gap_ms", raw.gap_ms, 1..=u32::MAX).unwrap_or(20),
+            },
+            Kind::WrongUnit => {
+                if let Some(to) = raw.to.filter(|to| raw.unit == Some(*to)) {
+                    self.refuse("to", format!("unit {to} is the right one"), None);
+                }
+                Act::WrongUnit { to: raw.to }
+            }
+            Kind::WrongFunction => Act::WrongFunction { to: self.within("to", raw.to, 1..=0x7F) },
+            Kind::Exception => {
+                self.needs("code", raw.code.is_some())?;
+                Act::Exception { code: self.within("code", raw.code, 1..=0xFF)? }
+            }
+            Kind::Busy => Act::Busy,
+            Kind::Echo => Act::Echo,
+            Kind::NoisyCable | Kind::SleepyDrive => return None,
+        })
+    }
+
+    fn bytes(&mut self) -> u8 {
+        self.within("bytes", self.raw.bytes, 1..=0xFF).unwrap_or(1)
+    }
+
+    fn delay(&mut self) -> Option<Act> {
+        self.needs("ms", self.raw.ms.is_some())?;
+        let ends = match self.raw.ms.as_ref()? {
+            RawMillis::Fixed(ms) => Some((*ms, *ms)),
+            RawMillis::Range(text) => text.split_once('-').and_then(|(least, most)| {
+                Some((least.trim().parse().ok()?, most.trim().parse().ok()?))
+            }),
+        };
+        match ends {
+            Some((least_ms, most_ms)) if least_ms <= most_ms && most_ms > 0 => {
+                Some(Act::Delay { least_ms, most_ms })
+            }
+            _ => {
+                let what = "a delay is a number of milliseconds above 0, or two such as 50-200";
+                self.refuse("ms", what, None);
+                None
+            }
+        }
+    }
+
+    /// A key that its kind can't do without.
+    fn needs(&mut self, key: &str, given: bool) -> Option<()> {
+        if !given {
+            let what = format!("`{}` needs `{key}`", self.raw.act.name());
+            self.refuse("do", what, None);
+        }
+        given.then_some(())
+    }
+
+    /// The value of `key`, if it is given and one of `range`.
+    fn within<T: Copy + PartialOrd + std::fmt::Display>(
+        &mut self,
+        key: &str,
+        value: Option<T>,
+        range: RangeInclusive<T>,
+    ) -> Option<T> {
+        let value = value?;
+        if !range.contains(&value) {
+            let what = match value < *range.start() {
+                true => format!("`{key}` is {} at least, not {value}", range.start()),
+                false => format!("`{key}` is {} at most, not {value}", range.end()),
+            };
+            self.refuse(key, what, None);
+        }
+        Some(value)
+    }
+}

@@ -1,0 +1,91 @@
+//! The kinds of fault: the name of each in files, what it does, and the keys that it goes by.
+
+use serde::Deserialize;
+
+#[cfg(feature = "cli")]
+use schemars::JsonSchema;
+
+/// Declares the kinds: variant, name in files, explanation, keys of its own.
+macro_rules! kinds {
+    ($($variant:ident $name:literal $about:literal [$($key:literal)*],)*) => {
+        /// What a rule does. The last few are presets: each stands for several rules.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+        #[cfg_attr(feature = "cli", derive(JsonSchema))]
+        pub enum Kind {
+            $(#[doc = $about] #[serde(rename = $name)] $variant,)*
+        }
+
+        impl Kind {
+            /// Every kind.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            /// The name in files.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// The keys that go with this kind and not with every one.
+            pub fn keys(self) -> &'static [&'static str] {
+                match self { $(Self::$variant => &[$($key,)*],)* }
+            }
+        }
+    };
+}
+
+kinds! {
+    LoseRequest "lose_request" "The drive never sees the request." [],
+    LoseReply "lose_reply" "The drive executes the request, and its reply is lost." [],
+    BadCrc "bad_crc" "The checksum of the reply is wrong: its bits are inverted." [],
+    FlipBits "flip_bits" "Some bits of the reply are turned over." ["bits"],
+    Truncate "truncate" "The end of the reply is missing." ["bytes"],
+    Extra "extra" "Random bytes follow the reply." ["bytes"],
+    Garbage "garbage" "Random bytes come before the reply." ["bytes"],
+    Delay "delay" "The reply leaves later." ["ms"],
+    Late "late" "The reply waits for the next request on its link and leaves first then." [],
+    Duplicate "duplicate" "The reply comes twice." [],
+    Split "split" "The reply leaves in two pieces." ["at" "gap_ms"],
+    WrongUnit "wrong_unit" "The reply names another unit." ["to"],
+    WrongFunction "wrong_function" "The reply names another function." ["to"],
+    Exception "exception" "An exception answers, and the drive executes nothing." ["code"],
+    Busy "busy" "Exception 06, server busy, answers, and the drive executes nothing." [],
+    Echo "echo" "The request comes back before the reply, as on a 2-wire line whose receiver stays on." [],
+    NoisyCable "noisy_cable" "Preset: a cable that picks up noise." [],
+    SleepyDrive "sleepy_drive" "Preset: a drive that answers slowly, and sometimes not at all." [],
+}
+
+impl Kind {
+    /// The rules that a preset stands for, in compact form. The rare ones come first, since the first acts.
+    pub fn preset(self) -> Option<&'static [&'static str]> {
+        match self {
+            Self::NoisyCable => Some(&[
+                "lose_request:probability=0.005",
+                "lose_reply:probability=0.005",
+                "truncate:bytes=2,probability=0.002",
+                "extra:bytes=1,probability=0.004",
+                "garbage:bytes=1,probability=0.004",
+                "flip_bits:bits=1,probability=0.01",
+            ]),
+            Self::SleepyDrive => Some(&[
+                "lose_request:probability=0.002",
+                "busy:probability=0.005",
+                "delay:ms=500-1500,probability=0.01",
+                "delay:ms=5-60",
+            ]),
+            _ => None,
+        }
+    }
+
+    /// Does it touch a request that nobody answers, too?
+    pub fn takes_broadcasts(self) -> bool {
+        matches!(self, Self::LoseRequest | Self::Echo)
+    }
+
+    /// Why it can do nothing on Modbus TCP, if it can't.
+    pub fn impossible_on_tcp(self) -> Option<&'static str> {
+        match self {
+            Self::BadCrc => Some("a frame of Modbus TCP has no checksum"),
+            Self::Echo => Some("nothing is echoed on Modbus TCP"),
+            _ => None,
+        }
+    }
+}

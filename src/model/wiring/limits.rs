@@ -1,0 +1,74 @@
+//! What the limits of an axis do: words resolved, and whether there is a limit at all.
+
+use super::compile::Wirer;
+use super::{Choice, Limits};
+use crate::model::raw::RawLimits;
+use crate::problem::{Path, Problem};
+use crate::words::{AlarmCause, Input, Output, Setting, SoftLimitRule, Word};
+
+impl Wirer<'_> {
+    pub(super) fn limits(&mut self, raw: Option<&RawLimits>) {
+        let path = Path::root().key("limits");
+        let stop = raw.and_then(|it| self.words_chosen(&it.stop, "way to stop", &path.key("stop")));
+        let soft = raw
+            .and_then(|it| self.words_chosen(&it.soft, "rule for soft limits", &path.key("soft")));
+        let has_soft = self.soft_limits(soft.as_ref(), &path);
+        let inputs = self.inputs_wired();
+        let switches = inputs.contains(&Input::LimitPos) || inputs.contains(&Input::LimitNeg);
+        if raw.is_some() && !switches && !has_soft {
+            let what = "`limits` changes nothing: there is no limit";
+            let advice = "wire `limit_pos` and `limit_neg`, or leave it out";
+            self.problems.push(Problem::key(path, what).advise(advice));
+        } else if soft.is_some() && !has_soft {
+            self.unused("soft", "no rows hold soft limits", &path);
+        }
+        self.limits_shown(&inputs, has_soft);
+        if self.wiring.axis.setting(Setting::Deviation).is_some() {
+            let name = Setting::Deviation.name();
+            let path = Path::root().key("quantities").key(name);
+            self.needs_alarm(name, AlarmCause::PositionDeviation, path);
+        }
+        self.wiring.limits = Limits { stop, soft };
+    }
+
+    /// Are there soft limits? They are two or none, and some day in force.
+    fn soft_limits(&mut self, rule: Option<&Choice<SoftLimitRule>>, path: &Path) -> bool {
+        let softs = [Setting::SoftLimitPos, Setting::SoftLimitNeg];
+        let wired = softs.map(|it| self.wiring.axis.setting(it).is_some());
+        if wired[0] != wired[1] {
+            let [here, missing] = if wired[0] { softs } else { [softs[1], softs[0]] };
+            let (here, missing) = (here.name(), missing.name());
+            let what = format!("`{here}` changes nothing: no row holds `{missing}`");
+            let path = Path::root().key("quantities").key(here);
+            let advice = format!("add `{missing}: ROW`, or leave it out");
+            self.problems.push(Problem::key(path, what).advise(advice));
+        }
+        if wired == [false, false] {
+            return false;
+        }
+        let rules = rule.map(Choice::all).unwrap_or_default();
+        let path = path.key("soft");
+        if !rules.is_empty() && rules.iter().all(|it| *it == SoftLimitRule::Off) {
+            let what = "soft limits are never in force";
+            let advice = "take their rows out of `quantities` and leave this out";
+            self.problems.push(Problem::key(path, what).advise(advice));
+        } else if rules.contains(&SoftLimitRule::AfterHoming) && self.wiring.homing.is_none() {
+            let what = "`after_homing` never comes: there is no `homing`";
+            self.problems.push(Problem::key(path, what));
+        }
+        true
+    }
+
+    fn limits_shown(&mut self, inputs: &[Input], has_soft: bool) {
+        let switches =
+            [(Output::AtLimitPos, Input::LimitPos), (Output::AtLimitNeg, Input::LimitNeg)];
+        for (output, input) in switches {
+            if !inputs.contains(&input) {
+                self.never_on(output, "no input signal of that name is wired");
+            }
+        }
+        for output in [Output::BeyondPos, Output::BeyondNeg].into_iter().filter(|_| !has_soft) {
+            self.never_on(output, "no rows hold soft limits");
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! What the log for programs says about each kind; the log for people stands in docs/faults.md.
+
+use super::{READ, ask, drive};
+use drivemu::fault::Kind;
+use drivemu::log::json::object;
+use serde_json::{Value, json};
+
+#[test]
+fn each_kind_as_json() {
+    for &kind in Kind::ALL {
+        let (spec, mut want) = match kind {
+            Kind::FlipBits => ("flip_bits:bits=2", json!({"bits": 2})),
+            Kind::Truncate => ("truncate:bytes=3", json!({"bytes": 3})),
+            Kind::Extra => ("extra:bytes=2", json!({"bytes": 2})),
+            Kind::Garbage => ("garbage", json!({"bytes": 1})),
+            Kind::Delay => ("delay:ms=200", json!({"ms": 200.0})),
+            Kind::Split => ("split:at=3,gap_ms=50", json!({"at": 3, "gap_ms": 50})),
+            Kind::WrongUnit => ("wrong_unit", json!({"to": 2})),
+            Kind::WrongFunction => ("wrong_function:to=6", json!({"to": 6})),
+            Kind::Exception => ("exception:code=4", json!({"code": 4})),
+            Kind::LoseRequest
+            | Kind::LoseReply
+            | Kind::BadCrc
+            | Kind::Late
+            | Kind::Duplicate
+            | Kind::Busy
+            | Kind::Echo => (kind.name(), json!({})),
+            Kind::NoisyCable | Kind::SleepyDrive => continue,
+        };
+        let mut rig = drive(&[spec]);
+        ask(&mut rig, READ);
+        let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
+        let told = told.filter(|it| it["event"] == "fault").collect::<Vec<Value>>();
+        let [Value::Object(told)] = told.as_slice() else { panic!("{told:?}") };
+        let common = [("rule", json!(kind.name())), ("kind", json!(kind.name()))];
+        let common = common.into_iter().chain([("unit", json!(1)), ("hit", json!(1))]);
+        common.for_each(|(key, value)| want[key] = value);
+        let own = |key: &String| !["t", "line", "event", "text"].contains(&key.as_str());
+        let told: Value =
+            told.iter().filter(|(key, _)| own(key)).map(|(k, v)| (k.clone(), v.clone())).collect();
+        assert_eq!(told, want, "{spec}");
+    }
+}

@@ -1,0 +1,78 @@
+//! A master that nobody here wrote notices each kind, under a paused clock: tokio-modbus.
+
+use super::drive;
+use drivemu::fault::Kind;
+use drivemu::testkit::live;
+use std::time::Duration;
+use tokio_modbus::client::{Context, rtu};
+use tokio_modbus::prelude::*;
+
+/// What a master makes of a read.
+#[derive(Debug, PartialEq, Eq)]
+enum Seen {
+    /// The value, 100.
+    Value,
+    /// The value, but only after 150 ms.
+    Slowly,
+    /// That exception.
+    Exception(ExceptionCode),
+    /// Nothing within a second.
+    Silence,
+    /// A frame that is none, or not the one that was asked for.
+    Bad,
+}
+
+async fn look(master: &mut Context) -> Seen {
+    let asked = tokio::time::Instant::now();
+    let read = master.read_holding_registers(0x0304, 1);
+    match tokio::time::timeout(Duration::from_secs(1), read).await {
+        Err(_) => Seen::Silence,
+        Ok(Err(_)) => Seen::Bad,
+        Ok(Ok(Err(code))) => Seen::Exception(code),
+        Ok(Ok(Ok(words))) if words != [100] => Seen::Bad,
+        Ok(Ok(Ok(_))) if asked.elapsed() > Duration::from_millis(150) => Seen::Slowly,
+        Ok(Ok(Ok(_))) => Seen::Value,
+    }
+}
+
+/// What it sees twice in a row.
+async fn two_looks(spec: &str) -> [Seen; 2] {
+    let (stream, serve) = live::stream(drive(&[spec]));
+    let serving = tokio::spawn(serve);
+    let mut master = rtu::attach_slave(stream, Slave(1));
+    let seen = [look(&mut master).await, look(&mut master).await];
+    drop(master);
+    serving.await.expect("no panic").expect("a clean end");
+    seen
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_master_notices_each_kind() {
+    for &kind in Kind::ALL {
+        let busy = Seen::Exception(ExceptionCode::ServerDeviceBusy);
+        let (spec, want) = match kind {
+            Kind::LoseRequest => ("lose_request:count=1", [Seen::Silence, Seen::Value]),
+            Kind::LoseReply => ("lose_reply:count=1", [Seen::Silence, Seen::Value]),
+            Kind::BadCrc => ("bad_crc:count=1", [Seen::Silence, Seen::Value]),
+            Kind::FlipBits => ("flip_bits:count=1", [Seen::Silence, Seen::Value]),
+            Kind::Truncate => ("truncate:count=1", [Seen::Silence, Seen::Value]),
+            Kind::Extra => ("extra:count=1,bytes=9", [Seen::Value, Seen::Value]),
+            Kind::Garbage => ("garbage:count=1", [Seen::Value, Seen::Value]),
+            Kind::Delay => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
+            Kind::Late => ("late:count=1", [Seen::Silence, Seen::Value]),
+            Kind::Duplicate => ("duplicate:count=1", [Seen::Value, Seen::Value]),
+            Kind::Split => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
+            Kind::WrongUnit => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),
+            Kind::WrongFunction => ("wrong_function:count=1", [Seen::Bad, Seen::Value]),
+            Kind::Exception => {
+                let device = Seen::Exception(ExceptionCode::ServerDeviceFailure);
+                ("exception:code=4,count=1", [device, Seen::Value])
+            }
+            Kind::Busy => ("busy:count=1", [busy, Seen::Value]),
+            // What is left over of the first spoils the second.
+            Kind::Echo => ("echo:count=1", [Seen::Bad, Seen::Bad]),
+            Kind::NoisyCable | Kind::SleepyDrive => continue,
+        };
+        assert_eq!(two_looks(spec).await, want, "{spec}");
+    }
+}

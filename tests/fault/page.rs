@@ -1,0 +1,93 @@
+//! docs/faults.md tells the truth: kinds, keys, log lines, presets and examples.
+
+use super::{READ, ask, drive};
+use crate::documents::fenced;
+use crate::expect::{read, root};
+use crate::kit::{Files, line_of, text_of};
+use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
+use drivemu::fault::Kind;
+use drivemu::fault::raw::KEYS;
+use drivemu::problem::render::render;
+use drivemu::testkit::transcript;
+
+/// The cells of each row of the tables under the heading `title`, without their marks for code.
+fn table(title: &str) -> Vec<Vec<String>> {
+    let page = read(&root("docs/faults.md"));
+    let part = page.split("\n## ").find(|it| it.starts_with(title)).expect("a heading");
+    let rows = part.lines().filter_map(|line| line.strip_prefix("| ")).skip(2);
+    let cell = |it: &str| it.trim().replace('`', "");
+    rows.map(|row| row.trim_end_matches('|').split('|').map(cell).collect()).collect()
+}
+
+#[test]
+fn each_kind_does_what_the_page_says() {
+    let rows = table("Kinds");
+    let kinds = Kind::ALL.iter().filter(|kind| kind.preset().is_none());
+    for (kind, row) in kinds.clone().zip(&rows) {
+        let [name, _, keys, example, log] = row.as_slice() else { panic!("{row:?}") };
+        assert_eq!((name.as_str(), keys), (kind.name(), &kind.keys().join(" ")));
+        let mut rig = drive(&[example]);
+        ask(&mut rig, READ);
+        let said = rig.log();
+        let said = said.lines().find(|line| line.contains(" fault ")).unwrap_or_default();
+        assert_eq!(said.split_once(' ').map(|(_, said)| said), Some(log.as_str()));
+    }
+    assert_eq!(rows.len(), kinds.count());
+}
+
+#[test]
+fn each_key_has_an_example() {
+    let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
+    let rows = table("Keys");
+    let mut keys: Vec<&str> = rows.iter().map(|row| row[0].as_str()).collect();
+    for row in &rows {
+        let example = &row[2];
+        assert!(row[0] == "do" || example.contains(&format!("{}=", row[0])), "{example}");
+        let problems = line.fault(example, &[]).err().unwrap_or_default();
+        assert!(problems.is_empty(), "{}", render(&problems, "faults.md", example));
+    }
+    keys.sort_unstable();
+    assert_eq!(keys, KEYS);
+}
+
+#[test]
+fn presets_have_the_numbers_of_the_page() {
+    let page = read(&root("docs/faults.md"));
+    for kind in Kind::ALL {
+        let Some(specs) = kind.preset() else { continue };
+        let intro = format!("\n`{}`, ", kind.name());
+        let (_, rest) = page.split_once(&intro).expect("a preset of the page");
+        let items = rest.lines().skip(2).map_while(|line| line.strip_prefix("- "));
+        let items: Vec<_> = items.map(|it| it.replace('`', "")).collect();
+        assert_eq!(items, specs);
+    }
+}
+
+#[test]
+fn examples_work() {
+    let page = read(&root("docs/faults.md"));
+    for text in fenced(&page, "text") {
+        transcript::run(&text, &Files).unwrap_or_else(|failure| panic!("{failure}\n{text}"));
+    }
+    let bench = &fenced(&page, "yaml")[0];
+    let bench = parse(bench, &BuiltinLibrary);
+    let bench = bench.unwrap_or_else(|problems| panic!("{}", problems[0]));
+    assert_eq!(bench.lines[0].faults.len(), 3 + Kind::NoisyCable.preset().map_or(0, <[_]>::len));
+    let consoles = fenced(&page, "console");
+    let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
+    let readme = fenced(&read(&root("README.md")), "console");
+    let commands = consoles[..1].iter().chain(&readme);
+    let specs = commands.flat_map(|text| text.split("--fault ").skip(1));
+    let specs: Vec<_> = specs
+        .filter_map(|it| it.split_whitespace().next())
+        .map(|it| it.trim_matches('\''))
+        .collect();
+    assert!(specs.len() >= 5, "{specs:?}");
+    for spec in specs {
+        assert_eq!(line.fault(spec, &[]).err(), None, "{spec}");
+    }
+    let (command, said) = consoles[1].split_once('\n').expect("two lines");
+    let spec = command.rsplit(' ').next().expect("a spec");
+    let problems = line.fault(spec, &[]).expect_err("a mistake");
+    assert_eq!(render(&problems, "--fault", spec), said);
+}
