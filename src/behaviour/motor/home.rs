@@ -273,7 +273,7 @@ impl Motor {
         match homing.step().map(|step| step.until) {
             // It stands there already.
             Some(Until::Edge(it)) if seeking && it == edge => return self.home_found(now, at),
-            // Here or from the start: what it looks for lies beyond.
+            // It passes the limit, or has started there: the index pulse lies beyond.
             Some(Until::Index(Some(it))) if seeking && it == edge => {
                 homing.doing = Doing::Seeking { armed: true };
                 return self.look_ahead(now);
