@@ -316,6 +316,8 @@ pub enum Change {
         method: i64,
         /// The positive one?
         forward: bool,
+        /// Does it go on from there? Otherwise it waits for its time limit.
+        turns: bool,
         /// In counts of the drive.
         at: i64,
     },

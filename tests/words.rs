@@ -2,6 +2,7 @@
 //!
 //! The `match`es have no `_` arm on purpose: a new word does not compile until it is tested here.
 
+mod homing;
 mod motion;
 mod segment;
 mod thresholds;

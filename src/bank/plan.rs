@@ -64,9 +64,11 @@ impl WritePlan {
 
     /// Those of them that are kept over power-off.
     pub fn stored<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (RowId, u32)> + 'a {
-        let kept = |(row, _): &(RowId, u32)| !model.map.row(*row).volatile;
-        let stores = self.layer == Layer::RamAndStore;
-        self.values().filter(move |value| stores && kept(value))
+        let all = self.layer == Layer::RamAndStore;
+        self.values().filter(move |(row, _)| {
+            let row = model.map.row(*row);
+            (all || row.autosave) && !row.volatile
+        })
     }
 }
 

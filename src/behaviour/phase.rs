@@ -58,6 +58,8 @@ pub enum Stage {
     FindsLimit {
         /// The positive one?
         forward: bool,
+        /// Does it go on from there?
+        turns: bool,
         /// Where.
         at: i64,
     },

@@ -158,8 +158,8 @@ impl Drive {
             Stage::Deviates => Change::Deviates,
             Stage::Seeks(step, speed) => Change::Seeks { method, step, mrpm: self.mrpm(speed) },
             Stage::Finds(step, position) => Change::Finds { method, step, at: at(position) },
-            Stage::FindsLimit { forward, at: position } => {
-                Change::FindsLimit { method, forward, at: at(position) }
+            Stage::FindsLimit { forward, turns, at: position } => {
+                Change::FindsLimit { method, forward, turns, at: at(position) }
             }
             Stage::Refines { forward } => Change::Refines { method, forward },
             Stage::Refined(position) => Change::Origin { method, at: at(position) },

@@ -31,6 +31,8 @@ impl Drive {
         if line {
             self.follow_line_settings();
         }
+        // What was written may be a limit that the axis goes by.
+        self.settle();
         // Commands act on what the same request has written, so they come last.
         for (row, raw) in plan.values() {
             let action = match self.model.wiring.reaction(row) {

@@ -33,8 +33,8 @@ impl Drive {
         let enabled = self.servo.is_enabled();
         let beyond = |forward: bool| {
             self.soft_limits().is_some_and(|[low, high]| {
-                let position = self.motor.position(self.now);
-                if forward { position > high } else { position < low }
+                let position = self.motor.state(self.now).position;
+                if forward { position > high as f64 } else { position < low as f64 }
             })
         };
         let user = self.model.wiring.user_outputs.map_or(0, |row| self.bank.raw(row));

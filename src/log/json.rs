@@ -197,8 +197,9 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             let (until, then) = (why::until(step.until), step.then.name());
             ("homing_finds", json!({"method": method, "until": until, "at": at, "then": then}))
         }
-        Change::FindsLimit { method, forward, at } => {
-            ("homing_limit", json!({"method": method, "positive": forward, "at": at}))
+        Change::FindsLimit { method, forward, turns, at } => {
+            let fields = json!({"method": method, "positive": forward, "turns": turns, "at": at});
+            ("homing_limit", fields)
         }
         Change::Refines { method, forward } => {
             ("homing_refines", json!({"method": method, "forward": forward}))

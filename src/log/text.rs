@@ -227,8 +227,9 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             };
             format!("homing method {method}: {until} at {at}, {then}")
         }
-        Change::FindsLimit { method, forward, at } => {
-            format!("homing method {method}: {} limit at {at}, slowing", side(*forward))
+        Change::FindsLimit { method, forward, turns, at } => {
+            let then = if *turns { "turning back" } else { "waiting there for the time limit" };
+            format!("homing method {method}: {} limit at {at}, {then}", side(*forward))
         }
         Change::Refines { method, forward } => {
             let way = if *forward { "forward" } else { "backward" };

@@ -106,14 +106,15 @@ impl Machine {
     }
 
     /// The next index mark passed after `after`, in either way. Downwards a mark is passed when the
-    /// axis leaves it.
+    /// axis leaves it. None is passed beyond a hard stop.
     pub fn next_index(&self, of: &Trajectory, after: Instant) -> Option<IndexPulse> {
         let Index { every, offset } = self.index.filter(|it| it.every > 0)?;
         // The first mark to be passed is one of the two neighbours.
         let low = below(of.position(after), every, offset)?;
         let high = low.checked_add(every)?;
+        let within = |mark| self.hard_stop.is_none_or(|[low, high]| low < mark && mark <= high);
         let pulse = |mark: i64, way| {
-            let at = of.crossing(mark as f64, way, after)?;
+            let at = of.crossing(mark as f64, way, after).filter(|_| within(mark))?;
             Some(IndexPulse { at, mark, way })
         };
         let pulses = [pulse(low, Way::Falling), pulse(high, Way::Rising)];
@@ -223,9 +224,10 @@ mod tests {
 
     #[test]
     fn passes_each_index_mark_once() {
+        let free = Machine { hard_stop: None, ..MACHINE };
         let marks = |of: Trajectory| {
-            let first = MACHINE.next_index(&of, Instant::ZERO);
-            let pulses = std::iter::successors(first, |it| MACHINE.next_index(&of, it.at));
+            let first = free.next_index(&of, Instant::ZERO);
+            let pulses = std::iter::successors(first, |it| free.next_index(&of, it.at));
             pulses.map(|it| (it.mark, it.way)).collect::<Vec<_>>()
         };
         let up = [-600, 100, 800, 1500].map(|it| (it, Way::Rising));
@@ -239,6 +241,14 @@ mod tests {
         };
         assert_eq!(marks(over(80.0)), [(100, Way::Rising), (100, Way::Falling)]);
         assert_eq!(marks(over(49.0)), []);
+    }
+
+    #[test]
+    fn passes_no_index_mark_beyond_a_hard_stop() {
+        let mark = |from, to| MACHINE.next_index(&run(from, to), Instant::ZERO).map(|it| it.mark);
+        assert_eq!(mark(50, 1500), Some(100));
+        assert_eq!(mark(850, 1600), None);
+        assert_eq!(mark(50, -1500), None);
     }
 
     #[test]

@@ -139,8 +139,8 @@ words! {
     /// How an index pulse refines the origin of methods that say `index: true`.
     IndexRule {
         None "none" "not at all",
-        Back "back" "the next index pulse in the opposite direction is the origin",
-        Onward "onward" "the next index pulse in the same direction is the origin",
+        Back "back" "the next index pulse against the direction of the method's first step is the origin",
+        Onward "onward" "the next index pulse in the direction of the method's first step is the origin; a limit that the method starts `by` does not end this way",
     }
 }
 

@@ -196,7 +196,7 @@ impl Motor {
             }
             Then::Origin => {
                 homing.origin = at;
-                self.refine(now, step.forward);
+                self.refine(now);
             }
         }
     }
@@ -268,11 +268,19 @@ impl Motor {
         if !homing.seen.has(ahead) {
             return;
         }
-        let wanted = Until::Edge(Edge { signal: ahead, on: true });
+        let edge = Edge { signal: ahead, on: true };
         let seeking = matches!(homing.doing, Doing::Seeking { .. });
-        if seeking && homing.step().is_some_and(|step| step.until == wanted) {
+        match homing.step().map(|step| step.until) {
             // It stands there already.
-            return self.home_found(now, at);
+            Some(Until::Edge(it)) if seeking && it == edge => return self.home_found(now, at),
+            // It passes the limit, or has started there: the index pulse lies beyond.
+            Some(Until::Index(Some(it))) if seeking && it == edge => {
+                homing.doing = Doing::Seeking { armed: true };
+                return self.look_ahead(now);
+            }
+            // The origin is this very limit, and the index pulse may lie beyond it.
+            _ if !seeking && homing.order.method.by == Some(ahead) => return,
+            _ => {}
         }
         if homing.order.limit == LimitRule::Alarm {
             self.lose(HomeEnd::Limit, true);
@@ -287,16 +295,19 @@ impl Motor {
             (homing.steps, homing.at, homing.fresh) = (homing.order.method.at_limit, 0, false);
         }
         homing.doing = if turns { Doing::Braking } else { Doing::Stuck };
-        self.told.push_back(Stage::FindsLimit { forward, at });
+        self.told.push_back(Stage::FindsLimit { forward, turns, at });
         self.home_brake(now);
     }
 
     /// Goes on from the origin for an index pulse, if there is one to look for.
-    fn refine(&mut self, now: Instant, forward: bool) {
+    fn refine(&mut self, now: Instant) {
         let Some(homing) = &mut self.homing else { return };
+        let method = homing.order.method;
+        // The last step may have gone either way, so back and onward are seen from the first.
+        let onward = method.steps.get(0).is_none_or(|step| step.forward);
         let forward = match homing.order.index {
-            IndexRule::Back if homing.order.method.index => !forward,
-            IndexRule::Onward if homing.order.method.index => forward,
+            IndexRule::Back if method.index => !onward,
+            IndexRule::Onward if method.index => onward,
             _ => return self.home_end(now),
         };
         homing.doing = Doing::Refining { forward };
