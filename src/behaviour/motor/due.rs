@@ -114,7 +114,8 @@ impl Motor {
     pub(super) fn stand(&mut self, now: Instant) {
         self.phase = Phase::Standing;
         self.look_ahead(now);
-        self.told.push_back(Stage::Stands(self.position(now)));
+        // Where it is to stand: it may still be on its last counts.
+        self.told.push_back(Stage::Stands(self.state(now).position.floor() as i64));
     }
 
     fn next_edge(&self, now: Instant) -> Option<Instant> {
