@@ -24,9 +24,7 @@ pub use choice::{Choice, Digit};
 pub(super) use compile::compile;
 pub use homing::{Finish, Homing};
 pub use limits::Limits;
-pub use segments::{
-    Lasts, PerRow, PositionSegment, PositionSegments, Segments, Target, VelocitySegments,
-};
+pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments};
 pub(super) use used::check_inert;
 
 use super::RowId;
