@@ -5,6 +5,7 @@ mod documents;
 mod expect;
 mod fault;
 mod frames;
+mod habits;
 mod kit;
 mod ladder;
 mod line;

@@ -4,9 +4,10 @@ use super::raw::{
     RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawWordOrder, RawWriteOnlyReads,
 };
 use super::rows::{Compiled, order};
-use super::{Access, RowId};
+use super::{Access, RowId, duration};
 use crate::problem::{Path, Problem, suggest};
-use crate::serial::Format;
+use crate::serial::{Format, Mode};
+use crate::time::Duration;
 use crate::wire::LengthCheck;
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
 use crate::words::{Cause, Word};
@@ -25,6 +26,8 @@ pub struct LineRules {
     pub format: Coded<WireFormat>,
     /// Characters of silence that end an RTU frame.
     pub silence: f64,
+    /// From the end of that silence to the beginning of a reply, where replies are paced.
+    pub reply_after: Duration,
     /// Most registers in one read.
     pub max_read: u16,
     /// Most registers in one write.
@@ -41,6 +44,17 @@ pub struct LineRules {
     pub write_only_reads_zero: bool,
     /// Causes and their codes, first one first.
     pub refuse: Refuse,
+}
+
+impl LineRules {
+    /// From the end of a request to the beginning of its reply in `mode`. CR LF ends an ASCII frame, so there
+    /// the drive waits for no silence.
+    pub fn turnaround(&self, mode: Mode) -> Duration {
+        match mode.ascii {
+            true => self.reply_after,
+            false => mode.settings.silence(self.silence) + self.reply_after,
+        }
+    }
 }
 
 /// Where the unit address comes from.
@@ -165,6 +179,8 @@ pub(super) fn compile(
         let what = format!("{} characters of silence are not between 1.5 and 100", raw.silence);
         problems.push(Problem::value(path.key("silence"), what));
     }
+    let reply_after = raw.reply_after.as_deref();
+    let reply_after = reply_after.and_then(|it| duration(it, &path.key("reply_after"), problems));
     if raw.crc_error.is_some_and(|code| code == 0 || code > 0x7F) {
         let what = "an exception code lies between 0x01 and 0x7F";
         problems.push(Problem::value(path.key("crc_error"), what).advise("null is silence"));
@@ -199,6 +215,7 @@ pub(super) fn compile(
         baud: Coded { row: baud?, digit: raw.baud.digit, codes: raw.baud.codes.clone() },
         format: format?,
         silence: raw.silence,
+        reply_after: reply_after.unwrap_or_default(),
         max_read: raw.max_read,
         max_write: raw.max_write,
         crc_error: raw.crc_error,
