@@ -6,6 +6,7 @@ mod keys;
 mod master;
 mod others;
 mod pacing;
+mod slices;
 
 use crate::kit::Files;
 use drivemu::bench::{BenchLine, parse};

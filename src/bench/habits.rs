@@ -14,8 +14,9 @@ const LATENCIES: std::ops::RangeInclusive<u128> = 1..=255;
 /// From one conversation of others to the next, if nobody says.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// Others that talk more often than this leave our master no room.
-const LEAST_EVERY: Duration = Duration::from_millis(1);
+/// Others that talk more often leave our master no room, and less often nobody waits for them.
+const PAUSES: std::ops::RangeInclusive<Duration> =
+    Duration::from_millis(1)..=Duration::from_secs(3600);
 
 /// Reads the habits of the line at `path`; what is wrong with them goes to `problems`.
 pub(super) fn habits(
@@ -55,8 +56,8 @@ fn chatter(raw: &RawChatter, path: &Path, problems: &mut Vec<Problem>) -> Chatte
     let every = raw.every.as_deref();
     let every = every.and_then(|text| duration(text, &path.key("every"), problems));
     let every = every.unwrap_or(EVERY);
-    if every < LEAST_EVERY {
-        let what = format!("others pause for 1 ms at least, not {every:?}");
+    if !PAUSES.contains(&every) {
+        let what = format!("others pause for 1 ms to 1 h, not {every:?}");
         problems.push(Problem::value(path.key("every"), what));
     }
     Chatter { units: raw.units.clone(), every }

@@ -15,6 +15,12 @@ use crate::wire::{Frame, Pdu};
 /// Characters of silence between frames (serial line, 2.5.1.1).
 const SILENCE: f64 = 3.5;
 
+/// How many turns are bursts of noise instead of conversations.
+const NOISE: f64 = 0.05;
+
+/// How many requests nobody answers.
+const NO_ANSWER: f64 = 0.1;
+
 /// No rule of faults can have this name, so that none draws the same.
 const STREAM: &str = "(chatter)";
 
@@ -93,24 +99,29 @@ impl Others {
             return Some(answer);
         }
         self.turn = now;
-        let rng = &mut self.rng;
-        // One conversation of 20 is a burst of noise, and one of 10 has no answer.
-        let (is_noise, is_lost) = (rng.happens(Chance::new(0.05)), rng.happens(Chance::new(0.1)));
-        let unit = self.habit.units[rng.between(0, self.habit.units.len() as u64 - 1) as usize];
-        let (request, answer) = conversation(rng);
-        let noise = noise(rng);
-        if is_noise || is_lost || ours.has(unit) {
+        let Self { rng, habit, .. } = self;
+        if rng.happens(Chance::new(NOISE)) {
+            let noise = noise(rng);
             self.pause(now);
-        } else {
+            self.spoke = true;
+            return Some(noise);
+        }
+        let unit = habit.units[rng.between(0, habit.units.len() as u64 - 1) as usize];
+        let is_answered = !rng.happens(Chance::new(NO_ANSWER));
+        let (request, answer) = conversation(rng);
+        if ours.has(unit) {
+            self.pause(now);
+            return None;
+        }
+        if is_answered {
             let answer = line.frame(unit, &answer);
             self.at = now + settings.silence(SILENCE) + settings.characters(answer.len() as f64);
             self.answer = Some(answer);
-        }
-        if ours.has(unit) && !is_noise {
-            return None;
+        } else {
+            self.pause(now);
         }
         self.spoke = true;
-        Some(if is_noise { noise } else { line.frame(unit, &request) })
+        Some(line.frame(unit, &request))
     }
 }
 

@@ -16,8 +16,11 @@ const LUMP: usize = 62;
 impl Bus {
     /// Gives the line its habits, in place of those that it had.
     pub fn set_habits(&mut self, habits: Habits) {
+        let is_same = habits.chatter == self.habits.chatter;
         self.habits = habits;
-        self.invite_others();
+        if !is_same {
+            self.invite_others();
+        }
     }
 
     /// What the line always does.

@@ -13,6 +13,9 @@ use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
 use crate::words::{Cause, Word};
 use std::collections::BTreeMap;
 
+/// What a drive may take to reply.
+const LONGEST_REPLY: Duration = Duration::from_secs(10);
+
 /// How a drive talks.
 #[derive(Debug)]
 pub struct LineRules {
@@ -181,6 +184,10 @@ pub(super) fn compile(
     }
     let reply_after = raw.reply_after.as_deref();
     let reply_after = reply_after.and_then(|it| duration(it, &path.key("reply_after"), problems));
+    if reply_after.is_some_and(|it| it > LONGEST_REPLY) {
+        let what = "a drive replies within 10 s, or nobody waits for it";
+        problems.push(Problem::value(path.key("reply_after"), what));
+    }
     if raw.crc_error.is_some_and(|code| code == 0 || code > 0x7F) {
         let what = "an exception code lies between 0x01 and 0x7F";
         problems.push(Problem::value(path.key("crc_error"), what).advise("null is silence"));
