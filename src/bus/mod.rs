@@ -168,7 +168,7 @@ impl Bus {
     /// Takes bytes that arrived on `link` at `now`.
     pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
         self.advance_to(now);
-        self.hush(link);
+        self.hush();
         for chunk in bytes.chunks(CHUNK) {
             let Some(it) = self.links.get_mut(&link) else { return };
             it.line.receive(self.now, chunk);

@@ -184,12 +184,13 @@ impl Bus {
         }
     }
 
-    /// Our master speaks on `link`. It has waited for silence, so what others said before has ended.
-    pub(super) fn hush(&mut self, link: LinkId) {
-        if self.others.as_mut().is_some_and(|others| others.fall_silent(self.now))
-            && let Some(silence) = self.silence_at(link)
-        {
-            self.listen(link, silence);
+    /// One of our masters speaks. It has waited for silence, so what others said before has ended on all links.
+    pub(super) fn hush(&mut self) {
+        if !self.others.as_mut().is_some_and(|others| others.fall_silent(self.now)) {
+            return;
         }
+        let silence = |(id, link): (&LinkId, &Link)| Some((*id, link.line.deadline()?));
+        let open: Vec<_> = self.links.iter().filter_map(silence).collect();
+        open.into_iter().for_each(|(link, silence)| self.listen(link, silence));
     }
 }

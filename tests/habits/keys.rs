@@ -4,6 +4,7 @@ use super::{ANSWER, Bench, MS, READ, frame, line};
 use drivemu::fault::{Habits, Kind};
 
 /// Everything that leaves in a while with two requests in it.
+#[cfg(feature = "cli")]
 fn conversation(habits: &str) -> Vec<super::Sent> {
     let mut bench = Bench::servo(habits);
     for _ in 0..2 {

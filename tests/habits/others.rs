@@ -96,6 +96,27 @@ fn our_answers_stay_right() {
     }
 }
 
+/// On each link the drives hear the others, and each master is answered right behind the other's answer.
+#[test]
+fn masters_on_several_links_are_answered() {
+    let habits = "settings: 9600-8N2, chatter: {units: [7], every: 8ms}";
+    let line = format!("rtu_over_tcp: '127.0.0.1:0', {habits}, drives: [{{model: hcfa-x}}]");
+    let mut bench = Bench::new(&line);
+    let framing = super::line(&line).wire.framing(1.0);
+    let links = [bench.link, bench.bus.open(framing)];
+    let mut rng = Fork::new(0, "others", "links").stream(0);
+    for _ in 0..500 {
+        bench.wait(Duration::from_micros(rng.between(5_000, 40_000)));
+        bench.sent.clear();
+        for link in links {
+            bench.link = link;
+            bench.receive(&frame(READ));
+        }
+        let answers = bench.sent.iter().map(|(_, bytes)| bytes.clone()).collect::<Vec<_>>();
+        assert_eq!(answers, [frame(ANSWER), frame(ANSWER)]);
+    }
+}
+
 /// Silence lies before each of their frames, also behind a reply of ours.
 #[test]
 fn they_keep_silence() {
