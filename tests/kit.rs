@@ -6,6 +6,7 @@ use drivemu::bench::{
 };
 use drivemu::bus::Output;
 use drivemu::event::{Event, What};
+use drivemu::fault::Habits;
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::testkit::{Rig, transcript};
@@ -123,7 +124,7 @@ pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Bench
     let devices = vec![device];
     let wire = WireSpec::of(&devices, None, None, false);
     let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    BenchLine { name, port, wire, devices, faults }
+    BenchLine { name, port, wire, devices, faults, habits: Habits::default() }
 }
 
 /// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
@@ -148,9 +149,10 @@ pub fn bench_line(text: &str) -> BenchLine {
 
 /// The same line again.
 pub fn again(line: &BenchLine) -> BenchLine {
-    let BenchLine { name, port, wire, devices, faults } = line;
+    let BenchLine { name, port, wire, devices, faults, habits } = line;
     let (name, port, faults) = (name.clone(), port.clone(), faults.clone());
-    BenchLine { name, port, wire: *wire, devices: devices.clone(), faults }
+    let (devices, habits) = (devices.clone(), habits.clone());
+    BenchLine { name, port, wire: *wire, devices, faults, habits }
 }
 
 /// The refusal of the last transaction, if it was one.

@@ -1,10 +1,11 @@
 //! One device of a bench: a model with its options, and what each station of it is set to.
 
 use crate::bank::Kept;
-use crate::drive::Setup;
+use crate::drive::{Drive, Setup};
 use crate::model::{Model, RowId};
 use crate::motion::Machine;
 use crate::problem::suggest;
+use crate::time::Instant;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -109,6 +110,14 @@ impl Device {
             true => Ok(Self { model, setups }),
             false => Err(problems),
         }
+    }
+}
+
+impl Device {
+    /// The unit addresses that its stations begin with.
+    pub fn units(&self) -> impl Iterator<Item = u8> {
+        let drive = |setup| Drive::new(self.model.clone(), setup, Instant::ZERO);
+        self.setups.iter().map(move |setup| drive(setup).unit())
     }
 }
 

@@ -1,19 +1,17 @@
 //! Fault rules of a line: read for the drives that are on it.
 
-use super::{BenchLine, Device, PortSpec};
-use crate::fault::{self, Faults, NoRow, Rule, Site};
+use super::{BenchLine, PortSpec};
+use crate::fault::{self, Faults, Habits, NoRow, Site, Weather};
 use crate::problem::{Problem, suggest};
 use crate::wire::Span;
 
-/// A line as its fault rules see it.
-pub(super) struct Drives<'a> {
-    pub port: &'a PortSpec,
-    pub devices: &'a [Device],
-}
-
-impl Site for Drives<'_> {
+impl Site for BenchLine {
     fn is_tcp(&self) -> bool {
         matches!(self.port, PortSpec::Tcp(_))
+    }
+
+    fn habits(&self) -> &Habits {
+        &self.habits
     }
 
     /// Where all drives that know the name have the row. One place must be right for all of them: a rule
@@ -45,9 +43,8 @@ impl BenchLine {
     ///
     /// # Errors
     /// Everything that is wrong with it, each with its place in `spec`.
-    pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<Vec<Rule>, Vec<Problem>> {
-        let site = Drives { port: &self.port, devices: &self.devices };
-        fault::parse(spec, &site, taken)
+    pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<Weather, Vec<Problem>> {
+        fault::parse(spec, self, taken)
     }
 
     /// Puts such a rule behind those that the line has.
@@ -55,10 +52,20 @@ impl BenchLine {
     /// # Errors
     /// As [`fault`](Self::fault).
     pub fn add_fault(&mut self, spec: &str) -> Result<(), Vec<Problem>> {
-        let taken: Vec<_> = self.faults.iter().map(|rule| rule.name.as_str()).collect();
-        let rules = self.fault(spec, &taken)?;
-        self.faults.extend(rules);
+        let weather = self.fault(spec, &self.rule_names())?;
+        self.put(weather);
         Ok(())
+    }
+
+    /// The names of the rules, in order.
+    pub(super) fn rule_names(&self) -> Vec<&str> {
+        self.faults.iter().map(|rule| rule.name.as_str()).collect()
+    }
+
+    /// Puts what was read behind what the line has.
+    pub(super) fn put(&mut self, weather: Weather) {
+        self.faults.extend(weather.rules);
+        self.habits = std::mem::take(&mut self.habits).and(weather.habits);
     }
 
     /// The rules, none of which has acted yet.

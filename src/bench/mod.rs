@@ -5,6 +5,7 @@
 
 mod device;
 mod faults;
+mod habits;
 mod machine;
 mod match_line;
 mod parse;
@@ -20,7 +21,7 @@ pub use state::{Saved, StateFile};
 pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;
-use crate::fault::Rule;
+use crate::fault::{Habits, Rule};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use std::sync::Arc;
@@ -89,6 +90,8 @@ pub struct BenchLine {
     pub devices: Vec<Device>,
     /// Fault rules, in order.
     pub faults: Vec<Rule>,
+    /// What the line always does.
+    pub habits: Habits,
 }
 
 /// Where masters reach a line.
@@ -130,6 +133,7 @@ impl BenchLine {
     pub fn bus(&self, seed: u64) -> Bus {
         let mut bus = Bus::new();
         bus.set_faults(self.weather(seed));
+        bus.set_habits(self.habits.clone());
         if !matches!(self.port, PortSpec::Tcp(_)) {
             bus.set_mode(self.wire.mode);
         }

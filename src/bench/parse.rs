@@ -1,14 +1,14 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
-use super::faults::Drives;
-use super::raw::{KEYS, RawBenchDrive, RawBenchLine};
+use super::habits::{habits, strangers};
+use super::raw::{KEYS, RawBenchDrive, RawBenchLine, RawPacing};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, Saved, SpecProblem,
     WireSpec, Wish, machine, match_line,
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
-use crate::fault::{self, Rule};
+use crate::fault;
 use crate::model::{Choices, Model};
 use crate::problem::{At, Path, Problem, Seg, section};
 use crate::serial::Settings;
@@ -158,6 +158,10 @@ impl Reader<'_> {
             ("settings", raw.settings.is_some()),
             ("ascii", raw.ascii.is_some()),
             ("strict", raw.strict),
+            ("pacing", raw.pacing != RawPacing::Ideal),
+            ("chunk", raw.chunk.is_some()),
+            ("echo", raw.echo),
+            ("chatter", raw.chatter.is_some()),
         ];
         for (key, _) in given.into_iter().filter(|(_, given)| *given) {
             let why = match (port, raw.ascii) {
@@ -268,26 +272,20 @@ impl Reader<'_> {
                 }
             }
         }
-        let faults = self.faults(raw, &port, &devices, path);
-        Some(BenchLine { name, port, wire, devices, faults })
+        let habits = habits(raw, &port, path, &mut self.problems);
+        strangers(&habits, &devices, path, &mut self.problems);
+        let mut line = BenchLine { name, port, wire, devices, faults: Vec::new(), habits };
+        self.faults(raw, &mut line, path);
+        Some(line)
     }
 
-    fn faults(
-        &mut self,
-        raw: &RawBenchLine,
-        port: &PortSpec,
-        devices: &[Device],
-        path: &Path,
-    ) -> Vec<Rule> {
-        let site = Drives { port, devices };
-        let mut rules: Vec<Rule> = Vec::new();
+    fn faults(&mut self, raw: &RawBenchLine, line: &mut BenchLine, path: &Path) {
         for (i, raw) in raw.faults.iter().enumerate() {
             let path = path.key("faults").index(i);
-            let taken: Vec<_> = rules.iter().map(|rule| rule.name.as_str()).collect();
-            let more = fault::compile(raw, &path, &site, &taken, &mut self.problems);
-            rules.extend(more);
+            let taken = line.rule_names();
+            let weather = fault::compile(raw, &path, line, &taken, &mut self.problems);
+            line.put(weather);
         }
-        rules
     }
 
     /// No two stations of a line may answer to one address. What masters have saved since may clash: real

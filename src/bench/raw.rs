@@ -39,11 +39,44 @@ pub struct RawBenchLine {
     /// End RTU frames by silence alone, as the standard says, instead of closing a complete one at once.
     #[serde(default)]
     pub strict: bool,
+    /// When replies leave; default `ideal`.
+    #[serde(default)]
+    pub pacing: RawPacing,
+    /// The latency timer of a USB adapter, `16ms`: it hands over 62 bytes at once, and fewer when so much time
+    /// has passed since the first of them. Default: there is no adapter.
+    pub chunk: Option<String>,
+    /// The master hears what it says, as on a 2-wire line whose receiver stays on.
+    #[serde(default)]
+    pub echo: bool,
+    /// Another master and its units talk between our transactions. Default: nobody does.
+    pub chatter: Option<RawChatter>,
     /// The drives.
     pub drives: Vec<RawBenchDrive>,
     /// Bad weather: fault rules. Of all that hold for a request, the first acts.
     #[serde(default)]
     pub faults: Vec<RawFault>,
+}
+
+/// When replies leave.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawPacing {
+    /// As soon as a request is understood.
+    #[default]
+    Ideal,
+    /// No earlier than the silence behind the request, the drive and the reply's characters take.
+    Line,
+}
+
+/// Another master and its units.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawChatter {
+    /// Whom it asks; none of them is a drive of this line.
+    pub units: Vec<u8>,
+    /// From one conversation to the next, on average; default `50ms`.
+    pub every: Option<String>,
 }
 
 /// One drive on a line.
@@ -130,10 +163,13 @@ pub const KEYS: &[&str] = &[
     "at",
     "bits",
     "bytes",
+    "chatter",
+    "chunk",
     "code",
     "count",
     "do",
     "drives",
+    "echo",
     "every",
     "faults",
     "from",
@@ -150,6 +186,7 @@ pub const KEYS: &[&str] = &[
     "negative_limit",
     "offset",
     "options",
+    "pacing",
     "position",
     "positive_limit",
     "probability",
@@ -168,5 +205,6 @@ pub const KEYS: &[&str] = &[
     "terminals",
     "to",
     "unit",
+    "units",
     "until",
 ];

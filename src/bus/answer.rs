@@ -4,6 +4,7 @@ use super::{Bus, LinkId, Output};
 use crate::event::{DriveId, Transaction, What};
 use crate::fault::Strike;
 use crate::line::{Foreign, Heard};
+use crate::time::Instant;
 use crate::wire::function::{EXCEPTION, READ};
 use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
 
@@ -16,9 +17,9 @@ enum Taken {
 }
 
 impl Bus {
-    /// Takes everything that `link` has heard by now.
-    pub(super) fn listen(&mut self, link: LinkId) {
-        while let Some(taken) = self.take(link) {
+    /// Takes everything that `link` has heard if there was silence until `now`.
+    pub(super) fn listen(&mut self, link: LinkId, now: Instant) {
+        while let Some(taken) = self.take(link, now) {
             if taken.is_request() {
                 self.release_late(link);
             }
@@ -42,10 +43,10 @@ impl Bus {
         }
     }
 
-    fn take(&mut self, link: LinkId) -> Option<Taken> {
+    fn take(&mut self, link: LinkId, now: Instant) -> Option<Taken> {
         let it = self.links.get_mut(&link)?;
         let sole = it.sole && self.drives.len() == 1;
-        Some(match it.line.next(self.now, &self.units)? {
+        Some(match it.line.next(now, &self.units)? {
             Heard::Request(adu) => request(adu),
             // 255 on TCP: the only drive there is.
             Heard::Foreign(Foreign::Request(adu)) if sole && adu.unit == 0xFF => request(adu),
@@ -72,7 +73,7 @@ impl Bus {
         let function = adu.function();
         let exception = |code| Response::Exception(Exception { function, code }).encode();
         if let Some(code) = strike.as_ref().and_then(Strike::exception) {
-            self.send(link, adu, exception(code), strike.as_mut());
+            self.send(link, id, adu, exception(code), strike.as_mut());
         } else if !strike.as_ref().is_some_and(Strike::loses_request) {
             let drive = &mut self.drives[usize::from(id.0)];
             let (answer, refusal) = match drive.request(now, &request) {
@@ -81,7 +82,7 @@ impl Bus {
             };
             // What an answer confirms must be there after a power failure.
             self.keep(id);
-            self.send(link, adu, answer, strike.as_mut());
+            self.send(link, id, adu, answer, strike.as_mut());
             self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
         }
         self.tell(unit, strike.as_ref());
@@ -120,10 +121,10 @@ impl Bus {
             let code = self.drive(id).model().line.crc_error?;
             Some((id, code))
         });
-        if let (Some((_, code)), [unit, function, ..]) = (answered, &*frame) {
+        if let (Some((drive, code)), [unit, function, ..]) = (answered, &*frame) {
             let exception = Exception { function: *function & 0x7F, code };
             let adu = Adu { unit: *unit, pdu: &frame[1..] };
-            self.send(link, adu, Response::Exception(exception).encode(), None);
+            self.send(link, drive, adu, Response::Exception(exception).encode(), None);
         }
         self.emit(What::BadCrc { frame, crc, answered });
     }

@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::event::DriveId;
-use crate::fault::Rule;
+use crate::fault::{Habits, Rule};
 use crate::words::{AlarmCause, Word};
 use thiserror::Error;
 
@@ -34,6 +34,8 @@ pub enum Command {
     AddFault(Rule),
     /// Take the fault rule of that name off the line. What it holds back still leaves.
     RemoveFault(String),
+    /// Give the line these habits from now on, in place of those that it has.
+    SetHabits(Habits),
 }
 
 /// The answer to a command that was carried out.
@@ -84,6 +86,10 @@ impl Bus {
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
             Command::RemoveFault(name) => return self.remove_fault(name),
+            Command::SetHabits(habits) => {
+                self.set_habits(habits);
+                return Ok(Reply::Done);
+            }
         };
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
@@ -106,7 +112,7 @@ impl Bus {
                 self.power_cycle(device);
             }
             // These are not for a drive and were carried out above.
-            Command::AddFault(_) | Command::RemoveFault(_) => {}
+            Command::AddFault(_) | Command::RemoveFault(_) | Command::SetHabits(_) => {}
         }
         Ok(Reply::Done)
     }

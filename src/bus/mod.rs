@@ -2,7 +2,8 @@
 //!
 //! Contract: feed one input, drain [`Bus::poll_output`] to `None`, come back at [`Bus::poll_at`] or with the
 //! next input. Deadlines at or before `now` happen before the input that arrives at `now`; equal
-//! deadlines happen in a fixed order, links first, then replies that were held, then drives by number.
+//! deadlines happen in a fixed order: links, bytes that come through, replies that begin, others on the line,
+//! then drives by number.
 //!
 //! A serial line has one link. A TCP port has one for each client, all onto the same drives.
 
@@ -10,6 +11,8 @@ mod agenda;
 mod answer;
 mod command;
 mod held;
+mod others;
+mod outlet;
 mod output;
 mod weather;
 
@@ -18,14 +21,15 @@ pub use output::{LinkId, Output, Wake, WakeReason};
 
 use crate::drive::{Drive, Setup};
 use crate::event::{Change, DriveId, Event, What};
-use crate::fault::Faults;
+use crate::fault::{Faults, Habits};
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
 use crate::serial::Mode;
 use crate::time::Instant;
-use crate::wire::BROADCAST;
+use crate::wire::{BROADCAST, Frame};
 use agenda::Agenda;
-use held::Held;
+use held::{Held, Ticket, Timed};
+use others::Others;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -43,11 +47,17 @@ pub struct Bus {
     devices: Vec<u16>,
     /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
     mode: Option<Mode>,
+    /// The same for what is on its way: the line moves when that has left.
+    spoken: Option<Mode>,
     units: Units,
     by_unit: [Option<DriveId>; 256],
     agenda: Agenda,
     faults: Faults,
+    habits: Habits,
     held: Held,
+    /// Bytes on the wire to the master.
+    leaving: Timed,
+    others: Option<Others>,
     outputs: VecDeque<Output>,
 }
 
@@ -56,6 +66,10 @@ struct Link {
     line: Line,
     /// Modbus TCP lets a client say 255 for "whoever is there" (messaging on TCP/IP, 3.1.3).
     sole: bool,
+    /// When the last character of a reply has left.
+    free: Instant,
+    /// What the adapter is still collecting.
+    lump: Option<Ticket>,
 }
 
 impl Bus {
@@ -68,11 +82,15 @@ impl Bus {
             drives: Vec::new(),
             devices: Vec::new(),
             mode: None,
+            spoken: None,
             units: Units::new(),
             by_unit: [None; 256],
             agenda: Agenda::default(),
             faults: Faults::default(),
+            habits: Habits::default(),
             held: Held::default(),
+            leaving: Timed::default(),
+            others: None,
             outputs: VecDeque::with_capacity(16),
         }
     }
@@ -93,13 +111,15 @@ impl Bus {
         let id = LinkId(self.next_link);
         self.next_link += 1;
         let sole = framing == Framing::Mbap;
-        self.links.insert(id, Link { line: Line::new(framing), sole });
+        let line = Line::new(framing);
+        self.links.insert(id, Link { line, sole, free: Instant::ZERO, lump: None });
         id
     }
 
     /// Says how the line talks. Until then, and on TCP, every drive hears everything.
     pub fn set_mode(&mut self, mode: Mode) {
         self.mode = Some(mode);
+        self.spoken = self.mode;
         self.readdress();
     }
 
@@ -111,6 +131,7 @@ impl Bus {
     /// Closes a link. What was half received on it is forgotten, and what was to be sent on it.
     pub fn close(&mut self, link: LinkId) {
         self.held.forget(link);
+        self.leaving.forget(link);
         self.links.remove(&link);
     }
 
@@ -147,10 +168,14 @@ impl Bus {
     /// Takes bytes that arrived on `link` at `now`.
     pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
         self.advance_to(now);
+        self.hush();
         for chunk in bytes.chunks(CHUNK) {
             let Some(it) = self.links.get_mut(&link) else { return };
             it.line.receive(self.now, chunk);
-            self.listen(link);
+            if self.habits.echo {
+                self.pass(link, &Frame::from_slice(chunk));
+            }
+            self.listen(link, self.now);
         }
     }
 
@@ -171,12 +196,19 @@ impl Bus {
         while let Some(wake) = self.poll_at().filter(|wake| wake.at <= now) {
             self.now = self.now.max(wake.at);
             match wake.reason {
-                WakeReason::Silence(link) => self.listen(link),
-                WakeReason::Reply(_) => {
-                    let held = self.held.take_first();
-                    let output = held.map(|(link, frame)| Output::Transmit { link, frame });
+                WakeReason::Silence(link) => self.listen(link, self.now),
+                WakeReason::Through(_) => {
+                    let through = self.leaving.take_first();
+                    let output = through.map(|(link, frame)| Output::Transmit { link, frame });
                     self.outputs.extend(output);
+                    self.move_line();
                 }
+                WakeReason::Reply(_) => {
+                    let held = self.held.timed.take_first();
+                    held.into_iter().for_each(|(link, frame)| self.transmit(link, frame));
+                    self.move_line();
+                }
+                WakeReason::Others => self.let_others_speak(),
                 WakeReason::Drive(id) => {
                     self.drives[usize::from(id.0)].advance_to(self.now);
                     self.after_drive(id);
@@ -210,10 +242,15 @@ impl Bus {
             Some(Wake { at, reason: WakeReason::Silence(*id) })
         };
         let silences = self.links.iter().filter_map(silence);
+        let through = |(at, link)| Wake { at, reason: WakeReason::Through(link) };
         let reply = |(at, link)| Wake { at, reason: WakeReason::Reply(link) };
-        let replies = self.held.first().map(reply);
+        let others = |others: &Others| Wake { at: others.at(), reason: WakeReason::Others };
+        let bytes = self.leaving.first().map(through);
+        let replies = self.held.timed.first().map(reply);
+        let others = self.others.as_ref().map(others);
         let drives = self.agenda.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
-        silences.chain(replies).chain(drives).min_by_key(|wake| wake.at)
+        let replies = bytes.into_iter().chain(replies);
+        silences.chain(replies).chain(others).chain(drives).min_by_key(|wake| wake.at)
     }
 
     fn emit(&mut self, what: What) {
@@ -265,8 +302,17 @@ impl Bus {
         let Some(Some(first)) = modes.next() else { return };
         if first != line && modes.all(|mode| mode == Some(first)) {
             self.mode = Some(first);
-            self.emit(What::Moved(first));
-            self.outputs.push_back(Output::Moved(first));
+            self.move_line();
+        }
+    }
+
+    /// Moves the port after its drives, once what is on its way has left.
+    fn move_line(&mut self) {
+        let Some(mode) = self.mode.filter(|_| self.spoken != self.mode) else { return };
+        if !self.is_under_way() {
+            self.spoken = self.mode;
+            self.emit(What::Moved(mode));
+            self.outputs.push_back(Output::Moved(mode));
         }
     }
 

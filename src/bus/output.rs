@@ -15,7 +15,7 @@ pub enum Output {
     /// A drive has stored something: what it keeps over power-off has to be safe before anything that comes
     /// behind this leaves, or an answer confirms what a power failure takes back.
     Keep(DriveId),
-    /// A whole answer, to be sent in one write.
+    /// A whole answer, or a lump of one where the line has an adapter, to be sent in one write.
     Transmit {
         /// Where to.
         link: LinkId,
@@ -45,8 +45,12 @@ pub struct Wake {
 pub enum WakeReason {
     /// Silence will end a frame on that link.
     Silence(LinkId),
-    /// A reply that was held leaves on that link.
+    /// Bytes have come through to the master of that link.
+    Through(LinkId),
+    /// A reply that was held begins to leave on that link.
     Reply(LinkId),
+    /// Others speak on the line.
+    Others,
     /// Something will happen in that drive.
     Drive(DriveId),
 }

@@ -76,6 +76,9 @@ pub struct RunArgs {
     /// Emulated seconds per wall second
     #[arg(long, value_name = "X", default_value_t = 1.0)]
     pub rate: f64,
+    /// When replies leave: at once, or no earlier than character times and the drive's reply delay allow
+    #[arg(long, value_name = "ideal|line", default_value = "ideal")]
+    pub pacing: PacingArg,
     /// Written atomically when every port is open: one JSON object
     #[arg(long, value_name = "FILE")]
     pub ready_file: Option<PathBuf>,
@@ -95,6 +98,12 @@ pub enum ParityArg {
     None,
     Even,
     Odd,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PacingArg {
+    Ideal,
+    Line,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,12 +1,13 @@
 //! `drivemu run`: flags or a bench file become a bench, and the shell runs it.
 
-use super::args::{LogFormatArg, ParityArg, RunArgs};
+use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
 use super::state::State;
 use super::{FAILED, Failure, INVALID, NO_PORT};
 use drivemu::bench::{
     Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, Saved, WireSpec, kind_of, match_line,
     parse_saved,
 };
+use drivemu::fault::{Habits, Pacing};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::problem::render::render;
@@ -114,6 +115,7 @@ fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
         ("--parity", args.parity.is_some()),
         ("--stop-bits", args.stop_bits.is_some()),
         ("--set", !args.set.is_empty()),
+        ("--pacing", args.pacing == PacingArg::Line),
     ];
     match flags.iter().find(|(_, given)| *given) {
         Some((flag, _)) => {
@@ -174,9 +176,17 @@ fn line(
         match_line(&mut device, wire.mode, told).map_err(Failure::invalid)?;
     } else if args.ascii || mode != own.mode {
         return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
+    } else if args.pacing == PacingArg::Line {
+        let text = "--pacing line: Modbus TCP has no characters that take time";
+        return Err(Failure::invalid(text));
     }
+    let pacing = match args.pacing {
+        PacingArg::Ideal => Pacing::Ideal,
+        PacingArg::Line => port.pacing(),
+    };
+    let habits = Habits { pacing, ..Habits::default() };
     let (name, devices, faults) = (name.into(), vec![device], Vec::new());
-    Ok(BenchLine { name, port, wire, devices, faults })
+    Ok(BenchLine { name, port, wire, devices, faults, habits })
 }
 
 fn port(args: &RunArgs) -> PortSpec {

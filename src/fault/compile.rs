@@ -3,7 +3,7 @@
 //! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
 
 use super::raw::{RawFault, RawFunctions, RawMillis, RawRegister};
-use super::{Act, Kind, Rule, When, spec};
+use super::{Act, Habits, Kind, Rule, When, spec};
 use crate::problem::{Path, Problem};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
@@ -15,6 +15,9 @@ use std::ops::RangeInclusive;
 pub trait Site {
     /// Is it Modbus TCP, without checksums and wires?
     fn is_tcp(&self) -> bool;
+
+    /// What it always does already.
+    fn habits(&self) -> &Habits;
 
     /// Where the row called `name` can be reached.
     ///
@@ -32,6 +35,15 @@ pub struct NoRow {
     pub advice: Option<String>,
 }
 
+/// What one rule as it is written makes of a line.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Weather {
+    /// The rule, or those of a preset.
+    pub rules: Vec<Rule>,
+    /// The habits of a preset.
+    pub habits: Habits,
+}
+
 /// Compiles the rule at `path` for `site`, where rules called `taken` stand already. A preset gives several
 /// rules. What is wrong goes to `problems`; then what comes back is not to be used.
 pub fn compile(
@@ -40,25 +52,26 @@ pub fn compile(
     site: &dyn Site,
     taken: &[&str],
     problems: &mut Vec<Problem>,
-) -> Vec<Rule> {
+) -> Weather {
     let mut reader = Reader { raw, path, site, problems };
     reader.refuse_idle_keys();
     let name = reader.name(taken);
     let when = reader.when();
     let Some(specs) = raw.act.preset() else {
-        return reader.act().map(|act| Rule { name, when, act }).into_iter().collect();
+        let rules = reader.act().map(|act| Rule { name, when, act }).into_iter().collect();
+        return Weather { rules, habits: Habits::default() };
     };
     let mut rules: Vec<Rule> = Vec::new();
     for spec in specs {
         let names: Vec<_> = rules.iter().map(|it| it.name.as_str()).collect();
-        for rule in spec::parse(spec, site, &names).unwrap_or_default() {
+        for rule in spec::parse(spec, site, &names).unwrap_or_default().rules {
             let own = rule.when;
             let when = When { chance: own.chance, ..when.clone() };
             rules.push(Rule { name: rule.name, when, act: rule.act });
         }
     }
     rules.iter_mut().for_each(|rule| rule.name = format!("{name}.{}", rule.name));
-    rules
+    Weather { rules, habits: raw.act.habits() }
 }
 
 struct Reader<'a> {
@@ -105,12 +118,37 @@ impl Reader<'_> {
             let problem = Problem::key(self.path.key(key), what);
             self.problems.push(problem.advise("write out the rules that you want"));
         }
+        self.refuse_half_a_habit();
         if let Some(why) = kind.impossible_on_tcp().filter(|_| self.site.is_tcp()) {
             self.refuse("do", why, None);
         }
         if raw.unit == Some(BROADCAST) && !kind.takes_broadcasts() {
             let what = format!("nobody replies to a broadcast, so `{}` has no effect", kind.name());
             self.refuse("unit", what, None);
+        }
+    }
+
+    /// A habit is the whole line's, always, and a line has one of each.
+    fn refuse_half_a_habit(&mut self) {
+        let (raw, habits) = (self.raw, self.raw.act.habits());
+        if habits.is_empty() {
+            return;
+        }
+        let conditions = [
+            ("unit", raw.unit.is_some()),
+            ("function", raw.function.is_some()),
+            ("register", raw.register.is_some()),
+            ("from", raw.from.is_some()),
+            ("until", raw.until.is_some()),
+        ];
+        let preset = raw.act.name();
+        for (key, _) in conditions.iter().filter(|(_, given)| *given) {
+            let what = format!("`{preset}` is a habit of the whole line and takes no `{key}`");
+            self.problems.push(Problem::key(self.path.key(key), what));
+        }
+        if let Some(key) = habits.shared(self.site.habits()) {
+            let what = format!("`{preset}` brings a `{key}`, and the line has one");
+            self.refuse("do", what, None);
         }
     }
 
@@ -256,7 +294,9 @@ impl Reader<'_> {
             }
             Kind::Busy => Act::Busy,
             Kind::Echo => Act::Echo,
-            Kind::NoisyCable | Kind::SleepyDrive => return None,
+            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => {
+                return None;
+            }
         })
     }
 

@@ -1,5 +1,7 @@
 //! The kinds of fault: the name of each in files, what it does, and the keys that it goes by.
 
+use super::{Chatter, Habits};
+use crate::time::Duration;
 use serde::Deserialize;
 
 #[cfg(feature = "cli")]
@@ -51,6 +53,8 @@ kinds! {
     Echo "echo" "The request comes back before the reply, as on a 2-wire line whose receiver stays on." [],
     NoisyCable "noisy_cable" "Preset: a cable that picks up noise." [],
     SleepyDrive "sleepy_drive" "Preset: a drive that answers slowly, and sometimes not at all." [],
+    UsbAdapter "usb_adapter" "Preset: a USB adapter that hands bytes over in lumps, and now and then loses some." [],
+    CrowdedLine "crowded_line" "Preset: others talk on the line, and now and then at the same time." [],
 }
 
 impl Kind {
@@ -71,7 +75,30 @@ impl Kind {
                 "delay:ms=500-1500,probability=0.01",
                 "delay:ms=5-60",
             ]),
+            Self::UsbAdapter => {
+                Some(&["lose_reply:probability=0.001", "split:gap_ms=16,probability=0.02"])
+            }
+            Self::CrowdedLine => Some(&[
+                "lose_request:probability=0.003",
+                "truncate:bytes=2,probability=0.002",
+                "garbage:bytes=2,probability=0.005",
+            ]),
             _ => None,
+        }
+    }
+
+    /// The habits that a preset gives its line besides.
+    pub fn habits(self) -> Habits {
+        let every = Duration::from_millis(50);
+        match self {
+            Self::UsbAdapter => {
+                Habits { chunk: Some(Duration::from_millis(16)), ..Habits::default() }
+            }
+            Self::CrowdedLine => {
+                let chatter = Chatter { units: vec![241, 242, 243], every };
+                Habits { chatter: Some(chatter), ..Habits::default() }
+            }
+            _ => Habits::default(),
         }
     }
 
@@ -85,6 +112,8 @@ impl Kind {
         match self {
             Self::BadCrc => Some("a frame of Modbus TCP has no checksum"),
             Self::Echo => Some("nothing is echoed on Modbus TCP"),
+            Self::UsbAdapter => Some("no serial adapter stands before Modbus TCP"),
+            Self::CrowdedLine => Some("nobody else talks on Modbus TCP"),
             _ => None,
         }
     }

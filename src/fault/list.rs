@@ -60,7 +60,7 @@ impl Faults {
             self.told.len() - 1
         });
         self.told[number].1 = rule.act.kind();
-        let fork = Fork::new(self.seed, &self.line, &rule.name);
+        let fork = self.fork(&rule.name);
         self.rules.push(Standing { rule, id: RuleId(number as u16), fork, seen: 0, hits: 0 });
         true
     }
@@ -70,6 +70,11 @@ impl Faults {
         let before = self.rules.len();
         self.rules.retain(|it| it.rule.name != name);
         self.rules.len() < before
+    }
+
+    /// The streams of random numbers for something else on this line.
+    pub fn fork(&self, name: &str) -> Fork {
+        Fork::new(self.seed, &self.line, name)
     }
 
     /// The names of the rules, in order.

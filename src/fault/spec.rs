@@ -4,17 +4,17 @@
 //! here becomes the same tree as a map in a bench file and is checked by the same code.
 
 use super::raw::{KEYS, RawFault};
-use super::{Rule, Site, compile};
+use super::{Site, Weather, compile};
 use crate::problem::{At, Mark, Path, Problem, Seg, section};
 use serde_yaml::{Mapping, Value};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Reads the compact form of one rule for `site`, where rules called `taken` stand already.
+/// Reads the compact form of one rule or preset for `site`, where rules called `taken` stand already.
 ///
 /// # Errors
 /// Everything that is wrong with it, each with its place in `spec`.
-pub fn parse(spec: &str, site: &dyn Site, taken: &[&str]) -> Result<Vec<Rule>, Vec<Problem>> {
+pub fn parse(spec: &str, site: &dyn Site, taken: &[&str]) -> Result<Weather, Vec<Problem>> {
     let mut problems = Vec::new();
     let cut = Cut::new(spec, &mut problems);
     let path = Path::root();

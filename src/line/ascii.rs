@@ -73,6 +73,10 @@ impl Ascii {
         waiting.then(|| self.last + self.gap)
     }
 
+    pub fn heard_at(&self) -> Instant {
+        self.last
+    }
+
     /// Looks at one character; leaves it where it is if what came before must be told first.
     fn step(&mut self, byte: u8) -> Step {
         if byte == b':' && !self.body.is_empty() {

@@ -152,6 +152,15 @@ impl Line {
         }
     }
 
+    /// When bytes came last, where time counts.
+    pub fn heard_at(&self) -> Instant {
+        match &self.framer {
+            Framer::Rtu(rtu) => rtu.heard_at(),
+            Framer::Ascii(ascii) => ascii.heard_at(),
+            Framer::Mbap(_) => Instant::ZERO,
+        }
+    }
+
     /// How its frames are coded.
     pub fn coding(&self) -> Coding {
         match &self.framer {

@@ -85,6 +85,10 @@ impl Rtu {
         (self.bytes.len() > self.taken).then(|| self.last + self.gap)
     }
 
+    pub fn heard_at(&self) -> Instant {
+        self.last
+    }
+
     /// Length of the frame at the front, if length and CRC both say that it is whole.
     fn early_end(&self, units: &Units) -> Option<usize> {
         if !self.patient {

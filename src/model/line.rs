@@ -4,13 +4,17 @@ use super::raw::{
     RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawWordOrder, RawWriteOnlyReads,
 };
 use super::rows::{Compiled, order};
-use super::{Access, RowId};
+use super::{Access, RowId, duration};
 use crate::problem::{Path, Problem, suggest};
-use crate::serial::Format;
+use crate::serial::{Format, Mode};
+use crate::time::Duration;
 use crate::wire::LengthCheck;
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
 use crate::words::{Cause, Word};
 use std::collections::BTreeMap;
+
+/// What a drive may take to reply.
+const LONGEST_REPLY: Duration = Duration::from_secs(10);
 
 /// How a drive talks.
 #[derive(Debug)]
@@ -25,6 +29,8 @@ pub struct LineRules {
     pub format: Coded<WireFormat>,
     /// Characters of silence that end an RTU frame.
     pub silence: f64,
+    /// From the end of that silence to the beginning of a reply, where replies are paced.
+    pub reply_after: Duration,
     /// Most registers in one read.
     pub max_read: u16,
     /// Most registers in one write.
@@ -41,6 +47,17 @@ pub struct LineRules {
     pub write_only_reads_zero: bool,
     /// Causes and their codes, first one first.
     pub refuse: Refuse,
+}
+
+impl LineRules {
+    /// From the end of a request to the beginning of its reply in `mode`. CR LF ends an ASCII frame, so there
+    /// the drive waits for no silence.
+    pub fn turnaround(&self, mode: Mode) -> Duration {
+        match mode.ascii {
+            true => self.reply_after,
+            false => mode.settings.silence(self.silence) + self.reply_after,
+        }
+    }
 }
 
 /// Where the unit address comes from.
@@ -165,6 +182,12 @@ pub(super) fn compile(
         let what = format!("{} characters of silence are not between 1.5 and 100", raw.silence);
         problems.push(Problem::value(path.key("silence"), what));
     }
+    let reply_after = raw.reply_after.as_deref();
+    let reply_after = reply_after.and_then(|it| duration(it, &path.key("reply_after"), problems));
+    if reply_after.is_some_and(|it| it > LONGEST_REPLY) {
+        let what = "a drive replies within 10 s, or nobody waits for it";
+        problems.push(Problem::value(path.key("reply_after"), what));
+    }
     if raw.crc_error.is_some_and(|code| code == 0 || code > 0x7F) {
         let what = "an exception code lies between 0x01 and 0x7F";
         problems.push(Problem::value(path.key("crc_error"), what).advise("null is silence"));
@@ -199,6 +222,7 @@ pub(super) fn compile(
         baud: Coded { row: baud?, digit: raw.baud.digit, codes: raw.baud.codes.clone() },
         format: format?,
         silence: raw.silence,
+        reply_after: reply_after.unwrap_or_default(),
         max_read: raw.max_read,
         max_write: raw.max_write,
         crc_error: raw.crc_error,

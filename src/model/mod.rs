@@ -13,6 +13,7 @@ mod options;
 pub mod raw;
 mod row;
 mod rows;
+mod times;
 mod wiring;
 
 pub use crate::words::RowId;
@@ -20,6 +21,7 @@ pub use line::{Coded, LineRules, LongAccess, Order, Refuse, UnitRule, WireFormat
 pub use load::{Choices, check, load};
 pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
+pub use times::duration;
 pub use wiring::{
     Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Hold, Homing,
     InputWords, Limits, Link, Monitor, Number, OutputWords, PositionSegment, PositionSegments,

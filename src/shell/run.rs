@@ -243,6 +243,9 @@ fn introduce(line: &BenchLine, endpoint: &Endpoint) {
         None => "Modbus TCP".into(),
     };
     info!("{}: {units} on {place} ({settings})", endpoint.name);
+    if !line.habits.is_empty() {
+        info!("{}: {}", endpoint.name, line.habits);
+    }
     let parity = line.wire.mode.settings.format.parity;
     if matches!(line.port, PortSpec::Pty(_)) && parity != Parity::None {
         info!("a pseudo-terminal carries no parity bit: open {place} with parity none");

@@ -7,6 +7,7 @@ use crate::bench::{
 use crate::bus::{Bus, Command, CommandError, LinkId, Output};
 use crate::drive::Drive;
 use crate::event::{DriveId, Event};
+use crate::fault::Habits;
 use crate::line::Framing;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
@@ -53,8 +54,8 @@ impl Rig {
         })?;
         let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
         let (name, port) = ("line".into(), PortSpec::Pty(None));
-        let (devices, faults) = (vec![device], Vec::new());
-        Ok(Self::line(BenchLine { name, port, wire, devices, faults }))
+        let (devices, faults, habits) = (vec![device], Vec::new(), Habits::default());
+        Ok(Self::line(BenchLine { name, port, wire, devices, faults, habits }))
     }
 
     /// The first line of a bench file. Its port is not opened.
@@ -115,6 +116,13 @@ impl Rig {
     pub fn with_fault(mut self, spec: &str) -> Result<Self, Vec<Problem>> {
         self.line.add_fault(spec)?;
         Ok(Self::framed(self.line, self.framing, self.seed))
+    }
+
+    /// The same line with other habits. Its clock starts anew.
+    #[must_use]
+    pub fn with_habits(mut self, habits: Habits) -> Self {
+        self.line.habits = habits;
+        Self::framed(self.line, self.framing, self.seed)
     }
 
     fn framed(line: BenchLine, framing: Framing, seed: u64) -> Self {
@@ -190,8 +198,12 @@ impl Rig {
     /// The first thing that is wrong with it.
     pub fn add_fault(&mut self, spec: &str) -> Result<(), String> {
         let taken: Vec<_> = self.bus.faults().names().collect();
-        let rules = self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
-        rules.into_iter().try_for_each(|rule| {
+        let weather = self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
+        if !weather.habits.is_empty() {
+            let habits = self.bus.habits().clone().and(weather.habits);
+            self.command(Command::SetHabits(habits)).map_err(|error| error.to_string())?;
+        }
+        weather.rules.into_iter().try_for_each(|rule| {
             self.command(Command::AddFault(rule)).map_err(|error| error.to_string())
         })
     }

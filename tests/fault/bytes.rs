@@ -124,9 +124,12 @@ fn each_kind_on_rtu() {
                 assert_eq!(rig.send(&broadcast), broadcast.to_vec());
                 assert_eq!(jog_speed(&mut rig), 7, "executed");
             }
-            Kind::NoisyCable | Kind::SleepyDrive => {
+            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => {
                 let mut rig = rig(kind.name());
-                (0..4000).for_each(|_| drop(both(&mut rig, READ)));
+                (0..4000).for_each(|_| {
+                    ask(&mut rig, READ);
+                    rig.advance(100 * MS);
+                });
                 let mut rules = rig.bus().faults().names();
                 let idle = rules.find(|name| super::hits(&rig, name) == 0);
                 assert_eq!(idle, None, "each rule of {} acts", kind.name());

@@ -3,7 +3,7 @@
 use super::{READ, ask, drive};
 use crate::documents::fenced;
 use crate::expect::{read, root};
-use crate::kit::{Files, line_of, text_of};
+use crate::kit::{Files, bench_line, line_of, text_of};
 use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
 use drivemu::fault::Kind;
 use drivemu::fault::raw::KEYS;
@@ -58,8 +58,11 @@ fn presets_have_the_numbers_of_the_page() {
         let intro = format!("\n`{}`, ", kind.name());
         let (_, rest) = page.split_once(&intro).expect("a preset of the page");
         let items = rest.lines().skip(2).map_while(|line| line.strip_prefix("- "));
-        let items: Vec<_> = items.map(|it| it.replace('`', "")).collect();
-        assert_eq!(items, specs);
+        let items = items.map(|it| it.replace('`', ""));
+        let (habits, rules): (Vec<_>, Vec<_>) = items.partition(|it| it.contains(": "));
+        assert_eq!(rules, specs);
+        let line = format!("pty: auto, drives: [{{model: hcfa-x}}], {}", habits.join(", "));
+        assert_eq!(bench_line(&format!("lines: [{{{line}}}]")).habits, kind.habits());
     }
 }
 

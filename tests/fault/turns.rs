@@ -113,7 +113,7 @@ fn rules_come_and_go() {
 #[test]
 fn commands_are_refused() {
     let line = crate::kit::line_of(crate::kit::text_of("hcfa-x"), &[], &Default::default());
-    let rule = || line.fault("bad_crc:name=x", &[]).expect("a good rule").remove(0);
+    let rule = || line.fault("bad_crc:name=x", &[]).expect("a good rule").rules.remove(0);
     let mut rig = drive(&["busy:name=x"]);
     let taken = rig.command(Command::AddFault(rule())).expect_err("the name is taken");
     assert_eq!(taken.to_string(), "there is a fault rule `x` on this line already");

@@ -30,6 +30,8 @@ const REFUSED: &[(&[&str], i32, &str)] = &[
     (&["run", "broken.yaml"], 2, "broken.yaml:1:9"),
     (&["run", "binary.yaml"], 2, "this is not UTF-8 text"),
     (&["run", "bench.yaml", "--unit", "3"], 2, "--unit goes with a model"),
+    (&["run", "bench.yaml", "--pacing", "line"], 2, "--pacing goes with a model"),
+    (&["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--pacing", "line"], 2, "no characters that take"),
     (&["run", "hcfa-x", "--fault", "lose_reply:evry=2"], 2, "did you mean `every`?"),
     (&["run", "hcfa-x", "--fault", "late", "--fault", "late:name=late"], 2, "--fault:1:11"),
     (&["run", "bench.yaml", "--fault", "bad_crc"], 2, "a frame of Modbus TCP has no checksum"),

@@ -6,6 +6,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 const READ: &str = "01 03 00 23 00 01 75 C0";
 const ANSWER: &str = "01 03 02 00 3C B8 55";
@@ -27,6 +28,27 @@ fn a_master_may_close_and_reopen() {
     for _ in 0..3 {
         assert_eq!(ask(&mut open(&program.path())), hex(ANSWER).expect("hex"));
     }
+}
+
+/// 14.031 ms: silence and delay of the drive, and seven characters. The timer of the system may be late, and
+/// on a busy machine often is; never is a reply early.
+#[test]
+#[allow(clippy::disallowed_methods)] // The time of the wall is what is tested.
+fn a_paced_reply_takes_its_time() {
+    let mut program = Program::run(&["hcfa-x", "--pacing", "line"]);
+    let said = program.listen();
+    let mut port = open(&program.path());
+    let request = hex("01 03 03 04 00 01 C5 8F").expect("hex");
+    let mut fastest = Duration::MAX;
+    for _ in 0..20 {
+        let asked = Instant::now();
+        port.write_all(&request).expect("written");
+        port.read_exact(&mut [0; 7]).expect("an answer");
+        fastest = fastest.min(asked.elapsed());
+    }
+    let theory = Duration::from_nanos(14_031_250);
+    assert!(fastest >= theory && fastest < 2 * theory, "{fastest:?}");
+    program.wait_until_said(&said, "paced replies");
 }
 
 #[test]

@@ -22,6 +22,9 @@ pub struct RawLine {
     /// Characters of silence that end an RTU frame when framing is strict; default 3.5.
     #[serde(default = "three_and_a_half")]
     pub silence: f64,
+    /// How long the drive takes to begin its reply once that silence is over; default 0. It counts where
+    /// a line paces replies.
+    pub reply_after: Option<String>,
     /// Most registers in one read, 1..125; default 125.
     #[serde(default = "all_of_a_read")]
     pub max_read: u16,

@@ -244,6 +244,7 @@ pub const KEYS: &[&str] = &[
     "register",
     "registers",
     "repeats",
+    "reply_after",
     "resettable",
     "rev",
     "rule",

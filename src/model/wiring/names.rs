@@ -2,9 +2,9 @@
 
 use super::compile::Wirer;
 use super::{Reaction, Shown, Shows};
-use crate::model::{Access, RowId};
+use crate::model::{Access, RowId, duration};
 use crate::problem::{At, Path, Problem, suggest};
-use crate::time::{Duration, parse_duration};
+use crate::time::Duration;
 use crate::words::{Output, Word};
 use std::collections::BTreeMap;
 
@@ -179,13 +179,6 @@ impl Wirer<'_> {
     }
 
     pub(super) fn duration(&mut self, text: Option<&str>, path: &Path) -> Option<Duration> {
-        let text = text?;
-        let duration = parse_duration(text);
-        if duration.is_none() {
-            let what = format!("`{text}` is no time");
-            let advice = "write a number and us, ms, s or min: 500ms";
-            self.problems.push(Problem::value(path.clone(), what).advise(advice));
-        }
-        duration
+        duration(text?, path, self.problems)
     }
 }

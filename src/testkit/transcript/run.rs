@@ -8,6 +8,7 @@ use crate::bench::{
 use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
+use crate::fault::Habits;
 use crate::testkit::{Rig, to_hex};
 use crate::units::parse_integer;
 use crate::wire::{ascii, rtu};
@@ -40,7 +41,8 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
         matched.map_err(|what| Failure { line: drive.line, what })?;
     }
     let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    let mut line = BenchLine { name, port, wire, devices, faults };
+    let habits = Habits::default();
+    let mut line = BenchLine { name, port, wire, devices, faults, habits };
     for (number, spec) in &script.faults {
         let added = line.add_fault(spec);
         added.map_err(|problems| Failure { line: *number, what: problems[0].to_string() })?;

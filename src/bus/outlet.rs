@@ -1,0 +1,117 @@
+//! The way of bytes to the master: at the pace of the line, and through an adapter that makes lumps of them.
+//!
+//! A request has ended when its last byte has arrived: where bytes come in one piece, that is the end of its
+//! last character. A reply begins after the drive's turnaround, its characters follow each other without a
+//! gap, and what has no adapter in front of it leaves in one piece with its last character (serial line, 2.5.1).
+
+use super::{Bus, LinkId, Output};
+use crate::event::DriveId;
+use crate::fault::{Habits, Pacing};
+use crate::time::{Duration, Instant};
+use crate::wire::Frame;
+
+/// Bytes that fill a lump: a packet of full speed USB less the two bytes of status that adapters put first.
+const LUMP: usize = 62;
+
+impl Bus {
+    /// Gives the line its habits, in place of those that it had.
+    pub fn set_habits(&mut self, habits: Habits) {
+        let is_same = habits.chatter == self.habits.chatter;
+        self.habits = habits;
+        if !is_same {
+            self.invite_others();
+        }
+    }
+
+    /// What the line always does.
+    pub fn habits(&self) -> &Habits {
+        &self.habits
+    }
+
+    /// When `drive` begins its reply to what has come on `link`.
+    pub(super) fn reply_begins(&self, link: LinkId, drive: DriveId) -> Instant {
+        let paced = self.spoken.filter(|_| self.habits.pacing != Pacing::Ideal);
+        let heard = self.links.get(&link).map(|it| it.line.heard_at());
+        let (Some(mode), Some(heard)) = (paced, heard) else { return self.now };
+        self.now.max(heard + self.drive(drive).model().line.turnaround(mode))
+    }
+
+    /// Time that `count` characters of a reply take.
+    pub(super) fn characters(&self, count: usize) -> Duration {
+        let paced = self.spoken.filter(|_| self.habits.pacing == Pacing::Line);
+        paced.map_or(Duration::ZERO, |mode| mode.settings.characters(count as f64))
+    }
+
+    /// Sends `frame` from `at` on.
+    pub(super) fn transmit_at(&mut self, at: Instant, link: LinkId, frame: Frame) {
+        match at <= self.now {
+            true => self.transmit(link, frame),
+            false => {
+                self.held.timed.until(at, link, frame);
+            }
+        }
+    }
+
+    /// Sends `frame` from now on, or from when what is on the wire has left.
+    pub(super) fn transmit(&mut self, link: LinkId, frame: Frame) {
+        if !self.habits.takes_time() {
+            return self.outputs.push_back(Output::Transmit { link, frame });
+        }
+        let Some(it) = self.links.get(&link) else { return };
+        let begins = self.now.max(it.free);
+        self.arrive(link, &frame, begins);
+    }
+
+    /// Passes bytes on whose last character has just ended: nobody here has sent them.
+    pub(super) fn pass(&mut self, link: LinkId, frame: &Frame) {
+        match self.habits.chunk {
+            None => self.leave(self.now, link, *frame),
+            Some(latency) => {
+                frame.iter().for_each(|byte| self.collect(link, latency, self.now, *byte));
+            }
+        }
+    }
+
+    /// Is something on its way that has to leave as the line is?
+    pub(super) fn is_under_way(&self) -> bool {
+        let waiting = self.held.timed.first().is_some() || self.leaving.first().is_some();
+        waiting && self.habits.takes_time()
+    }
+
+    /// Lets the characters of `frame` arrive, the first of which begins at `begins`.
+    fn arrive(&mut self, link: LinkId, frame: &Frame, begins: Instant) {
+        let ends = begins + self.characters(frame.len());
+        self.links.get_mut(&link).into_iter().for_each(|it| it.free = ends);
+        let Some(latency) = self.habits.chunk else { return self.leave(ends, link, *frame) };
+        for (i, byte) in frame.iter().enumerate() {
+            self.collect(link, latency, begins + self.characters(i + 1), *byte);
+        }
+    }
+
+    /// The adapter of `link` gets a byte at `at`. It hands over what it has when a packet is full, and
+    /// `latency` after the first byte of it.
+    fn collect(&mut self, link: LinkId, latency: Duration, at: Instant, byte: u8) {
+        let Some(it) = self.links.get_mut(&link) else { return };
+        let open = it.lump.filter(|(due, _)| at < *due);
+        let lump = open.and_then(|ticket| Some((ticket, self.leaving.get_mut(ticket)?)));
+        let Some((ticket, lump)) = lump else {
+            let ticket = self.leaving.until(at + latency, link, Frame::from_slice(&[byte]));
+            it.lump = Some(ticket);
+            return;
+        };
+        lump.push(byte);
+        if lump.len() == LUMP {
+            let full = self.leaving.take(ticket);
+            full.into_iter().for_each(|full| self.leave(at, link, full));
+        }
+    }
+
+    fn leave(&mut self, at: Instant, link: LinkId, frame: Frame) {
+        match at <= self.now {
+            true => self.outputs.push_back(Output::Transmit { link, frame }),
+            false => {
+                self.leaving.until(at, link, frame);
+            }
+        }
+    }
+}
