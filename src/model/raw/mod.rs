@@ -246,6 +246,7 @@ pub const KEYS: &[&str] = &[
     "repeats",
     "resettable",
     "rev",
+    "reversed",
     "rule",
     "see",
     "segments",

@@ -186,6 +186,9 @@ pub struct RawAxis {
     /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
     /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
     pub position_gain: Option<f64>,
+    /// A row: while it is not 0, positive counts go the negative way of a bench's machine. A change counts once
+    /// the axis stands.
+    pub reversed: Option<String>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }

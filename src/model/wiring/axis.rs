@@ -119,6 +119,8 @@ impl Wirer<'_> {
             self.problems.push(Problem::value(path.key("position_gain"), what));
         }
         self.wiring.axis.position_gain = raw.position_gain;
+        let reversed = raw.reversed.as_ref();
+        self.wiring.axis.reversed = reversed.and_then(|it| self.row(it, &path.key("reversed")));
     }
 
     fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
