@@ -267,6 +267,8 @@ pub struct Axis {
     pub position_gain: Option<f64>,
     /// While the row is not 0, positive counts go the machine's negative way.
     pub reversed: Option<RowId>,
+    /// What `rpm` in the units of rows stands for, in revolutions a minute, where a row says.
+    pub speed_unit: Option<Coded<f64>>,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
     /// Motions by number.
@@ -291,6 +293,7 @@ impl Default for Axis {
             coast,
             position_gain: None,
             reversed: None,
+            speed_unit: None,
             settings: Vec::new(),
             segments: Segments::default(),
         }

@@ -257,6 +257,7 @@ pub const KEYS: &[&str] = &[
     "sim",
     "soft",
     "span",
+    "speed_unit",
     "starter",
     "stations",
     "steps",
