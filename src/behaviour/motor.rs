@@ -118,6 +118,15 @@ impl Motor {
         &self.machine
     }
 
+    /// Counts the other way from now on, while it stands: the same place has the other sign.
+    pub fn turn_round(&mut self, now: Instant) {
+        let command = self.state(now).position;
+        self.lag = self.lag.with_deviation(self.feedback(now).position - command);
+        self.trajectory = Trajectory::rest(now, 0.0 - command);
+        self.machine = self.machine.mirrored();
+        self.look_ahead(now);
+    }
+
     /// Position and speed as they are commanded, as far as a hard stop lets the axis go; not in whole counts.
     pub fn state(&self, now: Instant) -> State {
         self.machine.hold(self.trajectory.state(now))

@@ -63,7 +63,9 @@ pub struct Drive {
     /// Number of the position segment that started last.
     segment: u16,
     chain: Chain,
-    /// Where the machine is when the position register says 0.
+    /// Do its positive counts go the machine's negative way? Then so do those of its motor.
+    reversed: bool,
+    /// Where the motor is when the position register says 0.
     zero: i64,
     /// Has an origin been found since power came on?
     home_done: bool,
@@ -101,6 +103,7 @@ impl Drive {
             velocity: None,
             segment: 0,
             chain: Chain::default(),
+            reversed: false,
             zero: 0,
             home_done: false,
             method: 0,

@@ -13,6 +13,18 @@ impl Drive {
         self.motor.position(self.now).saturating_sub(self.zero)
     }
 
+    /// Has positive counts go the way that a row says, once the axis stands. The position register goes on from what it says.
+    fn follow_direction(&mut self) {
+        let row = self.model.wiring.axis.reversed;
+        let reversed = row.is_some_and(|row| self.bank.value(&self.model, row) != 0);
+        if reversed != self.reversed && !self.motor.is_moving() {
+            let position = self.position();
+            self.motor.turn_round(self.now);
+            self.reversed = reversed;
+            self.zero = self.motor.position(self.now).saturating_sub(position);
+        }
+    }
+
     /// How fast the axis goes, in revolutions a minute.
     pub(super) fn rpm(&self) -> f64 {
         rpm(self.motor.speed(self.now), self.counts_per_rev())
@@ -29,6 +41,7 @@ impl Drive {
         if self.servo.is_braking() && !self.motor.is_moving() {
             self.servo.braked(&mut |change| self.changes.push_back(change));
         }
+        self.follow_direction();
         loop {
             let run = self.wanted_run();
             let wants = Wants { jog: run.map(|(_, ramp)| ramp), ..self.wants() };

@@ -4,7 +4,7 @@ use super::Drive;
 use crate::behaviour::Ramp;
 use crate::model::{Choice, Counts};
 use crate::motion::Move;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 use crate::words::{RowId, Setting};
 
 /// The rows that a motion goes by, and the drive that holds their values.
@@ -28,6 +28,15 @@ impl Drive {
     /// What a choice comes to, if there is one.
     pub(super) fn chosen<T: Copy>(&self, choice: &Option<Choice<T>>) -> Option<T> {
         choice.as_ref()?.get(|row| self.bank.value(&self.model, row))
+    }
+
+    /// The unit of a row. That of a speed may be finer than the model says, where a row decides.
+    pub fn unit_of(&self, row: RowId) -> Unit {
+        let unit = self.model.map.row(row).unit;
+        let rule = self.model.wiring.axis.speed_unit.as_ref();
+        let rule = rule.filter(|_| unit.dimension == Dimension::Speed);
+        let rpm = rule.and_then(|it| it.decode(self.bank.value(&self.model, it.row)));
+        Unit { scale: unit.scale * rpm.unwrap_or(1.0), ..unit }
     }
 
     /// Counts for one revolution.
@@ -103,7 +112,7 @@ impl Settings<'_> {
     pub(super) fn value(self, setting: Setting) -> Option<(f64, Dimension)> {
         let (_, row) = *self.rows.iter().find(|(it, _)| *it == setting)?;
         let Drive { model, bank, .. } = self.drive;
-        let unit = model.map.row(row).unit;
+        let unit = self.drive.unit_of(row);
         Some((bank.value(model, row) as f64 * unit.scale, unit.dimension))
     }
 }

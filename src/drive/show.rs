@@ -43,9 +43,10 @@ impl Drive {
     }
 
     fn show_quantity(&self, row: RowId, quantity: Quantity) -> u32 {
+        let unit = self.unit_of(row);
         let row = self.model.map.row(row);
         match quantity {
-            Quantity::SpeedActual => row.kind.raw((self.rpm() / row.unit.scale).round() as i64),
+            Quantity::SpeedActual => row.kind.raw((self.rpm() / unit.scale).round() as i64),
             // A counter that is full begins anew; it does not stick.
             Quantity::PositionActual => row.kind.wrapped(self.position()),
             _ => row.kind.raw(self.quantity(quantity)),

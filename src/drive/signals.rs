@@ -86,13 +86,24 @@ impl Drive {
         let mut active = u32::from(self.terminals) ^ self.normally_closed(terminals);
         for (i, row) in terminals.functions.iter().enumerate() {
             let signal = terminals.meaning(self.bank.raw(*row));
-            if let Some(switch) = signal.and_then(switch).filter(|it| self.motor.machine().has(*it))
-            {
+            let switch = signal.and_then(|signal| self.switch(signal));
+            if let Some(switch) = switch.filter(|it| self.motor.machine().has(*it)) {
                 let on = self.is_switched(switch) || u32::from(self.terminals) >> i & 1 != 0;
                 active = active & !(1 << i) | u32::from(on) << i;
             }
         }
         active
+    }
+
+    /// The switch of the machine that `signal` is wired to. Which end of the machine is its positive one does not
+    /// depend on which way the drive counts.
+    fn switch(&self, signal: Input) -> Option<Switch> {
+        match (signal, self.reversed) {
+            (Input::HomeSwitch, _) => Some(Switch::Home),
+            (Input::LimitPos, false) | (Input::LimitNeg, true) => Some(Switch::PositiveLimit),
+            (Input::LimitNeg, false) | (Input::LimitPos, true) => Some(Switch::NegativeLimit),
+            _ => None,
+        }
     }
 
     fn is_switched(&self, switch: Switch) -> bool {
@@ -115,7 +126,7 @@ impl Drive {
             }
         }
         for signal in &wiring.machine_inputs {
-            if switch(*signal).is_some_and(|switch| self.is_switched(switch)) {
+            if self.switch(*signal).is_some_and(|switch| self.is_switched(switch)) {
                 inputs.insert(*signal);
             }
         }
@@ -155,16 +166,6 @@ impl Shown {
     /// Does it show as active, given the signals?
     pub(super) fn is_active(self, outputs: Outputs) -> bool {
         outputs.has(self.signal) != self.inverted
-    }
-}
-
-/// The switch of a machine that moves `signal`.
-fn switch(signal: Input) -> Option<Switch> {
-    match signal {
-        Input::HomeSwitch => Some(Switch::Home),
-        Input::LimitPos => Some(Switch::PositiveLimit),
-        Input::LimitNeg => Some(Switch::NegativeLimit),
-        _ => None,
     }
 }
 

@@ -50,9 +50,7 @@ impl Drive {
     fn threshold(&self, threshold: Threshold) -> Option<f64> {
         Some(match self.model.wiring.threshold(threshold)? {
             Number::Fixed(number) => number,
-            Number::Row(row) => {
-                self.bank.value(&self.model, row) as f64 * self.model.map.row(row).unit.scale
-            }
+            Number::Row(row) => self.bank.value(&self.model, row) as f64 * self.unit_of(row).scale,
         })
     }
 }

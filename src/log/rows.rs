@@ -87,7 +87,7 @@ fn items(drive: &Drive, span: Span, word: impl Fn(usize) -> Option<u16>) -> Vec<
 pub fn text(drive: &Drive, item: Item) -> String {
     let map = &drive.model().map;
     match item {
-        Item::Row(id, value) => format!("{} = {}", label(map.row(id)), number(map.row(id), value)),
+        Item::Row(id, value) => format!("{} = {}", label(map.row(id)), number(drive, id, value)),
         Item::Half(id, word) => format!("half of {} = 0x{word:04X}", label(map.row(id))),
         Item::Bare(address, word) => format!("0x{address:04X} = {word}"),
     }
@@ -115,7 +115,8 @@ pub fn refused_text(drive: &Drive, item: Item) -> String {
 }
 
 /// A value as the row means it: words in hex where bits have names, and the meaning of a code.
-pub fn number(row: &Row, value: i64) -> String {
+fn number(drive: &Drive, id: RowId, value: i64) -> String {
+    let row = drive.model().map.row(id);
     if let Some(meaning) = row.values.get(&value) {
         return format!("{value} ({meaning})");
     }
@@ -124,6 +125,11 @@ pub fn number(row: &Row, value: i64) -> String {
     }
     match row.unit_text.as_str() {
         "" => value.to_string(),
+        // A row says that it is another one at present, in steps of the plain symbol.
+        unit if drive.unit_of(id) != row.unit => {
+            let step = (drive.unit_of(id).scale * 1e6).round() / 1e6;
+            format!("{value} x {step} {}", unit.rsplit(' ').next().unwrap_or(unit))
+        }
         // A factor is no unit of its own: 60 of `0.1 rpm`.
         unit if unit.contains(' ') => format!("{value} x {unit}"),
         unit => format!("{value} {unit}"),

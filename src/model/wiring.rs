@@ -262,6 +262,10 @@ pub struct Axis {
     pub coast: Duration,
     /// How fast a move makes up for a deviation, 1/s; `None` where it has none.
     pub position_gain: Option<f64>,
+    /// While the row is not 0, positive counts go the machine's negative way.
+    pub reversed: Option<RowId>,
+    /// What `rpm` in the units of rows stands for, in revolutions a minute, where a row says.
+    pub speed_unit: Option<Coded<f64>>,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
     /// Motions by number.
@@ -285,6 +289,8 @@ impl Default for Axis {
             counts_per_rev: Counts::Fixed(1),
             coast,
             position_gain: None,
+            reversed: None,
+            speed_unit: None,
             settings: Vec::new(),
             segments: Segments::default(),
         }

@@ -82,6 +82,20 @@ pub struct Hit {
 }
 
 impl Machine {
+    /// The same seen from the other side: every count has the other sign, and the ends have changed places.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        // A switch that was active from a count on is active up to it.
+        let edge = |it: i64| 1i64.saturating_sub(it);
+        Self {
+            home: self.home.map(|it| Zone { from: edge(it.to), to: edge(it.from) }),
+            negative_limit: self.positive_limit.map(edge),
+            positive_limit: self.negative_limit.map(edge),
+            hard_stop: self.hard_stop.map(|[low, high]| [high, low].map(i64::saturating_neg)),
+            index: self.index.map(|it| Index { offset: it.offset.saturating_neg(), ..it }),
+        }
+    }
+
     /// Is `switch` active with the axis at `position`? One that is not there never is.
     pub fn is_active(&self, switch: Switch, position: f64) -> bool {
         self.span(switch).is_some_and(|[from, to]| from <= position && position < to)
@@ -220,6 +234,26 @@ mod tests {
         }
         assert_eq!(none.next_hit(&of, Instant::ZERO), None);
         assert_eq!(none.next_index(&of, Instant::ZERO), None);
+    }
+
+    #[test]
+    fn mirrored_it_is_the_same_machine() {
+        let mirrored = MACHINE.mirrored();
+        assert_eq!(mirrored.mirrored(), MACHINE);
+        let turned = [
+            (Switch::Home, Switch::Home),
+            (Switch::NegativeLimit, Switch::PositiveLimit),
+            (Switch::PositiveLimit, Switch::NegativeLimit),
+        ];
+        for (count, (one, other)) in (-400..1200).flat_map(|it| turned.map(|pair| (it, pair))) {
+            let (here, there) = (f64::from(count), f64::from(-count));
+            let same = mirrored.is_active(one, there) == MACHINE.is_active(other, here);
+            assert!(same, "{one:?} at {count}");
+        }
+        let hit = mirrored.next_hit(&run(0, -1200), Instant::ZERO).expect("it goes beyond");
+        assert_eq!((hit.position, hit.way), (-1100, Way::Falling));
+        let mark = mirrored.next_index(&run(0, -200), Instant::ZERO).map(|it| it.mark);
+        assert_eq!(mark, Some(-100));
     }
 
     #[test]

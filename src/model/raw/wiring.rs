@@ -1,6 +1,6 @@
 //! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
 
-use super::RawSegments;
+use super::{RawChosen, RawSegments};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -186,6 +186,11 @@ pub struct RawAxis {
     /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
     /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
     pub position_gain: Option<f64>,
+    /// A row: while it is not 0, positive counts go the negative way of a bench's machine. A change counts once
+    /// the axis stands.
+    pub reversed: Option<String>,
+    /// Where a row decides what `rpm` in the units of rows stands for: `rpm` or `0.1 rpm`, say, by value.
+    pub speed_unit: Option<RawChosen<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }

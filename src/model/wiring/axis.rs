@@ -5,7 +5,7 @@ use super::Counts;
 use super::compile::Wirer;
 use crate::model::raw::{RawAxis, RawCounts, RawSegments};
 use crate::problem::{Path, Problem};
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
 use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Word};
 
 /// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
@@ -119,6 +119,21 @@ impl Wirer<'_> {
             self.problems.push(Problem::value(path.key("position_gain"), what));
         }
         self.wiring.axis.position_gain = raw.position_gain;
+        let reversed = raw.reversed.as_ref();
+        self.wiring.axis.reversed = reversed.and_then(|it| self.row(it, &path.key("reversed")));
+        let unit = raw.speed_unit.as_ref();
+        let read = |wirer: &mut Self, text: &String, path: &Path| wirer.speed_unit(text, path);
+        self.wiring.axis.speed_unit =
+            unit.and_then(|it| self.chosen(it, &path.key("speed_unit"), read));
+    }
+
+    fn speed_unit(&mut self, text: &str, path: &Path) -> Option<f64> {
+        let unit = Unit::parse(text).filter(|it| it.dimension == Dimension::Speed);
+        if unit.is_none() {
+            let problem = Problem::value(path.clone(), format!("`{text}` is no unit of speed"));
+            self.problems.push(problem.advise("write `rpm`, or a factor and `rpm`"));
+        }
+        unit.map(|it| it.scale)
     }
 
     fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {

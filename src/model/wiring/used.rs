@@ -17,9 +17,9 @@ pub(in crate::model) fn check_inert(
     let mut told: Vec<&Path> = Vec::new();
     for ((id, row), path) in rows.map.rows().zip(&rows.paths) {
         let wired = used[usize::from(id.0)];
-        // What a homing goes by is read when it starts, and that is at a standstill.
-        let at_stop = row.applies == Applies::AtStop
-            && wiring.homing.iter().flat_map(Homing::rows).any(|it| it == id);
+        // What a homing goes by is read when it starts, and that is at a standstill; so does an axis turn round.
+        let mut standing = wiring.homing.iter().flat_map(Homing::rows).chain(wiring.axis.reversed);
+        let at_stop = row.applies == Applies::AtStop && standing.any(|it| it == id);
         let at_once = row.applies == Applies::Now || at_stop;
         let waits = !at_once && wiring.reaction(id) != Reaction::Line;
         if wired && waits && !told.contains(&path) {
@@ -55,6 +55,8 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     if let Counts::Row(row) = wiring.axis.counts_per_rev {
         mark(row);
     }
+    wiring.axis.reversed.into_iter().for_each(&mut mark);
+    wiring.axis.speed_unit.iter().for_each(|it| mark(it.row));
     wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
