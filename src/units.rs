@@ -70,7 +70,8 @@ impl Unit {
             Some((number, symbol)) => (number.parse::<f64>().ok()?, symbol.trim()),
             None => (1.0, text),
         };
-        if !(factor.is_finite() && factor > 0.0) {
+        // Beyond this no row of 32 bits holds anything that a machine can have.
+        if !(1e-9..=1e9).contains(&factor) {
             return None;
         }
         let (_, dimension, scale) = SYMBOLS.iter().find(|(name, ..)| *name == symbol)?;

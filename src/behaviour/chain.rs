@@ -92,10 +92,10 @@ impl Chain {
         self.under_way = None;
     }
 
-    /// The axis stands in position.
-    pub fn arrive(&mut self, now: Instant) {
+    /// The axis stands in position from `at` on, which may be yet to come.
+    pub fn arrive(&mut self, at: Instant) {
         self.under_way.iter_mut().for_each(|link| {
-            link.arrived.get_or_insert(now);
+            link.arrived.get_or_insert(at);
         });
     }
 

@@ -80,7 +80,8 @@ pub struct Motor {
     wants: Wants,
     /// An order ended the jog; its level must go before it acts again.
     jog_spent: bool,
-    in_position: bool,
+    /// The last move or homing has come to its end.
+    arrived: bool,
     homing: Option<Box<Homing>>,
     due: Due,
     told: VecDeque<Stage>,
@@ -106,7 +107,7 @@ impl Motor {
             machine,
             wants: Wants::default(),
             jog_spent: false,
-            in_position: false,
+            arrived: false,
             homing: None,
             due: Due::default(),
             told: VecDeque::with_capacity(8),
@@ -132,6 +133,11 @@ impl Motor {
         self.machine.hold(self.trajectory.state(now))
     }
 
+    /// The last whole count of the command, as far as a hard stop lets the axis go.
+    pub(super) fn commanded(&self, now: Instant) -> i64 {
+        self.state(now).position.floor() as i64
+    }
+
     /// Is a motion under way?
     pub fn is_moving(&self) -> bool {
         self.phase != Phase::Standing
@@ -151,7 +157,7 @@ impl Motor {
     pub fn reaches(&self, now: Instant, position: i64) -> Option<Instant> {
         // A count is shown from its lower edge on, so from above it begins at the next one.
         let mark = |count: i64, way| self.trajectory.crossing(count as f64, way, now);
-        match position.cmp(&self.position(now)) {
+        match position.cmp(&self.commanded(now)) {
             Ordering::Equal => Some(now),
             Ordering::Greater => mark(position, Way::Rising),
             Ordering::Less => mark(position.saturating_add(1), Way::Falling),
@@ -160,7 +166,7 @@ impl Motor {
 
     /// Has its last move or homing come to its end?
     pub fn has_arrived(&self) -> bool {
-        self.in_position
+        self.arrived
     }
 
     /// The next thing to be told.
@@ -209,9 +215,9 @@ impl Motor {
         interrupt: bool,
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
-        let here = self.state(now).position.floor() as i64;
+        let here = self.commanded(now);
         let target = target(here);
-        self.may_go(now, target - here)?;
+        self.may_go(now, target.saturating_sub(here) as f64)?;
         let trajectory = Trajectory::to_position(now, self.lead(now).0, target, how);
         (self.decel, self.forward) = (how.decel, target >= here);
         self.begin(now, trajectory, Phase::Moving);
@@ -226,7 +232,7 @@ impl Motor {
     /// Why it does not start: without power, while held, while it moves, or into a limit.
     pub fn start_run(&mut self, now: Instant, ramp: Ramp) -> Result<(), Ignored> {
         self.may_start(false)?;
-        self.may_go(now, ramp.speed as i64)?;
+        self.may_go(now, ramp.speed)?;
         self.go(now, ramp, Phase::Running);
         self.told.push_back(Stage::Runs(ramp.speed));
         self.advance(now);
@@ -242,7 +248,6 @@ impl Motor {
 
     /// Slows down to a standstill with a slope of its own.
     pub fn stop_with(&mut self, now: Instant, decel: f64) {
-        self.jog_spent = true;
         if self.wants.power && self.is_moving() {
             self.lose_origin(HomeEnd::Stopped);
             let trajectory = Trajectory::stop(now, self.state(now), decel);
@@ -359,8 +364,12 @@ impl Motor {
             Phase::Standing | Phase::Stopping => self.carried_lag(now),
             Phase::Running | Phase::Jogging { .. } | Phase::Homing | Phase::Coasting => Lag::NONE,
         };
-        (self.trajectory, self.phase, self.in_position) = (trajectory, phase, false);
+        let jumps = trajectory.state(now).position != self.state(now).position;
+        (self.trajectory, self.phase, self.arrived) = (trajectory, phase, false);
         self.look_ahead(now);
+        if jumps {
+            self.look_at_switches(now);
+        }
     }
 }
 

@@ -33,12 +33,14 @@ impl Drive {
             self.bank.preset(&model, *row, newer);
             newer = older;
         }
+        self.memory.change(!model.wiring.alarm_history.is_empty());
     }
 
     /// Forgets the alarms that were raised earlier.
     pub(super) fn forget_alarms(&mut self) {
         let model = self.model.clone();
         model.wiring.alarm_history.iter().for_each(|row| self.bank.preset(&model, *row, 0));
+        self.memory.change(true);
         self.changes.push_back(Change::AlarmHistoryCleared);
     }
 

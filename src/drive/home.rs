@@ -6,7 +6,7 @@ use crate::event::{Change, Ignored};
 use crate::model::{Choice, Finish, Homing};
 use crate::motion::Index;
 use crate::time::Duration;
-use crate::words::{Action, AlarmCause, HomeEnd, HomeStarter, OriginPosition, Setting};
+use crate::words::{Action, AlarmCause, HomeEnd, HomeStarter, OriginPosition, RowId, Setting};
 
 /// What happens at the origin where a model says nothing.
 const FINISH: Finish = Finish { go: false, position: OriginPosition::Zero, of_origin: false };
@@ -75,9 +75,11 @@ impl Drive {
         }
     }
 
-    /// Is `action` still at work? Then a row that it clears keeps what was written.
-    pub(super) fn is_at_work(&self, action: Option<Action>) -> bool {
-        action == Some(Action::HomeStart) && self.motor.is_homing()
+    /// The value of `row` that has set off what is still at work.
+    pub(super) fn at_work(&self, row: RowId) -> Option<u32> {
+        let commands = self.model.wiring.commands.iter().find(|it| it.row == row)?;
+        let start = commands.actions.iter().find(|(_, action)| *action == Action::HomeStart)?;
+        self.motor.is_homing().then(|| self.model.map.row(row).kind.raw(start.0))
     }
 
     fn home_order(&self, homing: &Homing, number: i64) -> Option<HomeOrder> {
@@ -106,7 +108,7 @@ impl Drive {
             self.axis().value(Setting::HomeTimeLimit).filter(|(time, _)| *time > 0.0)?;
         let factor = homing.time_factor.map(|it| it.of(self.bank.value(&self.model, it.row)));
         let factor = factor.filter(|it| *it > 0).unwrap_or(1);
-        Some(Duration::from_secs_f64(seconds * factor as f64))
+        Duration::try_from_secs_f64(seconds * factor as f64).ok()
     }
 
     fn home_starter(&self) -> Option<HomeStarter> {

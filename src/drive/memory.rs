@@ -18,6 +18,11 @@ impl Memory {
     pub(super) fn power_on(&mut self) {
         self.haste = Haste::default();
     }
+
+    /// The drive itself has stored something, which wears nothing out that anybody counts.
+    pub(super) fn change(&mut self, stored: bool) {
+        self.fresh |= stored;
+    }
 }
 
 impl Drive {

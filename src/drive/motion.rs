@@ -58,6 +58,9 @@ impl Drive {
             }
         }
         self.home_at_first_enable();
+        if self.motor.take_edge(self.now) {
+            self.gather_inputs();
+        }
     }
 
     /// Positions of the machine between which the axis has to stay, if such are in force.
@@ -91,7 +94,7 @@ impl Drive {
         match stop {
             AlarmStop::Coast => {}
             AlarmStop::Ramp => self.motor.stop_with(self.now, decel),
-            AlarmStop::Quick => self.motor.quick_stop(self.now),
+            AlarmStop::Quick => self.motor.stop_with(self.now, f64::INFINITY),
         }
         self.tell_stages(None);
     }

@@ -5,7 +5,7 @@ use crate::bank::WritePlan;
 use crate::event::Change;
 use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
-use crate::words::{Action, Modifiers, RowId};
+use crate::words::{Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
@@ -35,13 +35,13 @@ impl Drive {
         self.settle();
         // Commands act on what the same request has written, so they come last.
         for (row, raw) in plan.values() {
-            let action = match self.model.wiring.reaction(row) {
+            match self.model.wiring.reaction(row) {
                 Reaction::Command(index) => self.command(index, row, raw),
                 Reaction::Trigger(index) => self.trigger(index, raw),
-                _ => None,
-            };
-            if self.model.map.row(row).clears && !self.is_at_work(action) {
-                self.bank.set(row, 0);
+                _ => {}
+            }
+            if self.model.map.row(row).clears {
+                self.bank.set(row, self.at_work(row).unwrap_or(0));
             }
         }
     }
@@ -77,15 +77,15 @@ impl Drive {
         }
     }
 
-    fn command(&mut self, index: u16, row: RowId, raw: u32) -> Option<Action> {
+    fn command(&mut self, index: u16, row: RowId, raw: u32) {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
-        let (_, action) = *actions.iter().find(|(it, _)| *it == value)?;
-        self.act(action, Modifiers::default());
-        Some(action)
+        if let Some((_, action)) = actions.iter().find(|(it, _)| *it == value) {
+            self.act(*action, Modifiers::default());
+        }
     }
 
-    fn trigger(&mut self, index: u16, raw: u32) -> Option<Action> {
+    fn trigger(&mut self, index: u16, raw: u32) {
         let triggers = &self.model.wiring.triggers[usize::from(index)];
         let is_set = |bit: u8| raw >> bit & 1 != 0;
         let mut modifiers = Modifiers::default();
@@ -94,9 +94,9 @@ impl Drive {
             .iter()
             .filter(|(bit, _)| is_set(*bit))
             .for_each(|(_, it)| modifiers.insert(*it));
-        let (_, action) = *triggers.actions.iter().find(|(bit, _)| is_set(*bit))?;
-        self.act(action, modifiers);
-        Some(action)
+        if let Some((_, action)) = triggers.actions.iter().find(|(bit, _)| is_set(*bit)) {
+            self.act(*action, modifiers);
+        }
     }
 
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on.

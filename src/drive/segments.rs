@@ -51,8 +51,8 @@ impl Drive {
         let arrived = self.motor.has_arrived();
         if !(free && (arrived || phase == Phase::Moving)) {
             self.chain.end();
-        } else if arrived {
-            self.chain.arrive(self.now);
+        } else if let Some(at) = self.in_position_at() {
+            self.chain.arrive(at);
         }
         if !matches!(phase, Phase::Jogging { .. }) {
             self.velocity = self.velocity.filter(|it| !it.by_edge);
@@ -70,7 +70,11 @@ impl Drive {
         // The motion under way, if there is one, is that of the segment which gives way.
         match self.move_by_segment(to, true) {
             Ok(()) => self.settle(),
-            Err(_) => self.chain.end(),
+            Err(why) => {
+                self.chain.end();
+                let input = Input::SegmentStart;
+                self.changes.push_back(Change::InputIgnored { input, why });
+            }
         }
     }
 
@@ -96,8 +100,8 @@ impl Drive {
         let running = self.velocity.is_some_and(|it| it.by_edge);
         let absolute = self.target_of(number)? == Target::Absolute && !running;
         self.motor.may_start(chained || running)?;
-        self.segment = number;
         self.go_to(&segment.settings, absolute, chained || running, Some(number))?;
+        self.segment = number;
         if let (Some(rules), Some(link)) = (&segments.chain, &segment.link) {
             self.chain.begin(self.now, self.chain_rule(rules, link));
         }
@@ -123,6 +127,8 @@ impl Drive {
         if self.velocity_lasts() == Some(Lasts::Edge) {
             self.motor.may_start(false)?;
             self.velocity = self.selected_velocity(true);
+            let way = self.wanted_run().map_or(0.0, |(_, ramp)| ramp.speed);
+            self.motor.may_go(self.now, way)?;
         }
         match self.velocity {
             None => Err(Ignored::NoSegment),
@@ -155,7 +161,11 @@ impl Drive {
         for (slot, (i, condition)) in waits.iter_mut().zip(rules.conditions(raw)) {
             let value = rules.value(condition, self.bank.value(&self.model, link.values[i]));
             *slot = Some(match condition {
-                Condition::Delay => Wait::Delay(Duration::from_secs_f64(value.max(0.0))),
+                Condition::Delay => {
+                    // Where it is more than there is time for, it never comes.
+                    let time = Duration::try_from_secs_f64(value.max(0.0));
+                    Wait::Delay(time.unwrap_or(Duration::MAX))
+                }
                 Condition::Step => Wait::Step,
                 Condition::Position => {
                     let place = (value.round() as i64).saturating_add(self.zero);

@@ -2,7 +2,7 @@
 
 use super::Drive;
 use crate::model::Number;
-use crate::time::Duration;
+use crate::time::{Duration, Instant};
 use crate::words::{Output, Outputs, Threshold};
 
 impl Drive {
@@ -39,11 +39,17 @@ impl Drive {
     }
 
     fn is_in_position(&self) -> bool {
+        self.in_position_at().is_some_and(|at| at <= self.now)
+    }
+
+    /// When the axis is, or will be, where its last move was to end, for as long as it takes to settle. That move
+    /// has ended.
+    pub(super) fn in_position_at(&self) -> Option<Instant> {
         let window = self.threshold(Threshold::PositionWindow).unwrap_or(0.0);
         let settle = self.threshold(Threshold::PositionSettle).unwrap_or(0.0);
         // Rows hold no times that are negative or beyond a few years.
         let settle = Duration::try_from_secs_f64(settle).unwrap_or_default();
-        self.motor.is_in_position(self.now, window, settle)
+        self.motor.arrives_at(self.now, window).map(|at| at + settle)
     }
 
     /// The number in the base unit of its dimension.

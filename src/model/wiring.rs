@@ -28,7 +28,7 @@ pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments
 pub(super) use used::check_inert;
 
 use super::RowId;
-use super::line::code_in;
+use super::line::{Coded, code_in};
 use crate::time::Duration;
 use crate::units::Unit;
 use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Threshold};

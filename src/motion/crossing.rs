@@ -26,15 +26,6 @@ impl Trajectory {
         )
     }
 
-    /// The first instant after `after` at which the magnitude of the speed passes `speed`.
-    pub fn speed_crossing(&self, speed: f64, way: Way, after: Instant) -> Option<Instant> {
-        self.first(
-            after,
-            |it| way.is_past(it.speed.abs(), speed),
-            |segment| (speed - segment.start.speed.abs()).abs() / segment.accel.abs(),
-        )
-    }
-
     /// The first instant after `after` from which on `past` holds; `guess` gives the seconds from the
     /// start of a segment. Within a segment `past` changes at most once, since the speed keeps its sign.
     fn first(
@@ -80,13 +71,6 @@ mod tests {
         assert_eq!(at(25.0).map(Instant::as_nanos).map(|it| it / 1000), Some(99_999));
         assert_eq!(at(1100.0).map(Instant::as_nanos).map(|it| (it + 500) / 1000), Some(1_200_000));
         assert_eq!(at(0.0), None, "it is there already");
-        let fast = of.speed_crossing(500.0, Way::Rising, Instant::ZERO);
-        assert_eq!(fast, Some(Instant::from_millis(100)));
-        assert_eq!(
-            of.speed_crossing(1000.0, Way::Rising, Instant::ZERO),
-            Some(Instant::from_millis(200))
-        );
-        assert_eq!(of.speed_crossing(1000.1, Way::Rising, Instant::ZERO), None);
     }
 
     #[test]
@@ -151,13 +135,6 @@ mod tests {
                     prop_assert_eq!(of.crossing(position, way, at - NS), found);
                 }
             }
-        }
-
-        #[test]
-        fn speed_agrees_with_looking(of in trajectories(), speed in 0.0..40_000.0, rising: bool) {
-            let way = if rising { Way::Rising } else { Way::Falling };
-            let found = of.speed_crossing(speed, way, of.begin);
-            check(found, of.begin, &instants(&of, 1000), |at| way.is_past(of.speed(at).abs(), speed))?;
         }
     }
 }

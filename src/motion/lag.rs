@@ -5,7 +5,7 @@
 //! acceleration that has a closed form, applied segment by segment.
 
 use super::trajectory::Segment;
-use super::{State, Trajectory, search};
+use super::{State, Trajectory};
 use crate::time::{Duration, Instant};
 
 /// How far the feedback is behind the trajectory that it belongs to. Goes with each new trajectory by
@@ -38,13 +38,6 @@ impl Lag {
     #[must_use]
     pub fn with_deviation(self, deviation: f64) -> Self {
         Self { deviation: if self.gain.is_some() { deviation } else { 0.0 }, ..self }
-    }
-
-    /// With another gain from the beginning of the trajectory on.
-    #[must_use]
-    pub fn with_gain(self, gain: f64) -> Self {
-        let new = Self::new(gain);
-        Self { deviation: if new.gain.is_some() { self.deviation } else { 0.0 }, ..new }
     }
 
     /// Command less feedback at `at`, in counts.
@@ -90,28 +83,6 @@ impl Lag {
         let ns = (0..4).take_while(late).count() as u64;
         Some(at + Duration::from_nanos(ns))
     }
-
-    /// The first instant after `after` at which the deviation gets beyond `limit` counts, either way.
-    pub fn exceeds_at(&self, of: &Trajectory, limit: f64, after: Instant) -> Option<Instant> {
-        // Each side for itself: in one sweep it may leave one limit and get beyond the other.
-        let beyond = |sign: f64| {
-            let exceeds = |at| self.deviation(of, at) * sign > limit;
-            search::first(after, self.turns(of), exceeds, |()| after)
-        };
-        [beyond(1.0), beyond(-1.0)].into_iter().flatten().min()
-    }
-
-    /// Instants between which the deviation is monotone.
-    fn turns(&self, of: &Trajectory) -> impl Iterator<Item = (Instant, ())> {
-        let mut deviation = self.deviation;
-        let spans = self.gain.into_iter().flat_map(|gain| of.spans().map(move |it| (gain, it)));
-        spans.flat_map(move |(gain, (segment, until))| {
-            // What would turn after the segment is over does not.
-            let turn = (segment.from + turn(gain, deviation, segment)).min(until);
-            deviation = behind(gain, deviation, segment, until - segment.from);
-            [turn, until].map(|t| (of.instant(t), ()))
-        })
-    }
 }
 
 /// The deviation `x` seconds into `segment`, which it enters with `deviation`.
@@ -128,19 +99,9 @@ fn behind(gain: f64, deviation: f64, segment: &Segment, x: f64) -> f64 {
     deviation * (1.0 - share) + segment.start.speed * lagged + segment.accel * (x - lagged) / gain
 }
 
-/// Seconds into `segment` at which the deviation turns round; zero if it does not.
-fn turn(gain: f64, deviation: f64, segment: &Segment) -> f64 {
-    // d = steady + growth * x + rest * exp(-K x); its slope is zero where exp(-K x) = growth / (K rest).
-    let growth = segment.accel / gain;
-    let rest = deviation - segment.start.speed / gain + growth / gain;
-    let ratio = gain * rest / growth;
-    if ratio > 1.0 { ratio.ln() / gain } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Way;
     use crate::motion::tests::{instants, trajectories};
     use proptest::prelude::*;
 
@@ -154,10 +115,6 @@ mod tests {
         assert!((lag.feedback(&of, late).speed - 2000.0).abs() < 1e-6);
         assert_eq!(lag.settles_at(&of, 5.0), None);
         assert_eq!(lag.position(&of, late), of.position(late) - 50);
-        // It grows up to that and never beyond.
-        assert_eq!(lag.exceeds_at(&of, 50.1, Instant::ZERO), None);
-        let at = lag.exceeds_at(&of, 49.0, Instant::ZERO).expect("on the way");
-        assert!(at > Instant::from_millis(200) && at < Instant::from_millis(400), "{at}");
     }
 
     #[test]
@@ -221,28 +178,6 @@ mod tests {
             prop_assert!(carried.deviation(&next, at).abs() <= window);
             let before = at - Duration::from_nanos(2);
             prop_assert!(at == now || carried.deviation(&next, before).abs() > window);
-        }
-
-        #[test]
-        fn exceeds_as_looking_does(
-            of in trajectories(), gain in 1.0..500.0, start in -100.0..100.0, limit in 0.0..500.0,
-        ) {
-            let lag = Lag { deviation: start, ..Lag::new(gain) };
-            let beyond = |at| Way::Rising.is_past(lag.deviation(&of, at).abs(), limit);
-            let found = lag.exceeds_at(&of, limit, of.begin);
-            let mut was = beyond(of.begin);
-            for at in instants(&of, 500) {
-                if found.is_some_and(|it| it <= at) {
-                    break;
-                }
-                let is = beyond(at);
-                // Grazing the limit may fall between two nanoseconds.
-                prop_assert!(was || !is || lag.deviation(&of, at).abs() < limit + 1e-4, "{:?} {:?}", at, found);
-                was = is;
-            }
-            if let Some(at) = found {
-                prop_assert!(beyond(at) && !beyond(at - Duration::from_nanos(1)));
-            }
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Made in `plan.rs`, only read here. It relies on two things that plans promise:
 //! in no segment does the speed change its sign, and the first segment starts at the beginning.
 
-use super::State;
+use super::{State, Way};
 use crate::time::{Duration, Instant};
 
 /// A move in the worst case: brake, speed up, cruise, slow down.
@@ -93,6 +93,17 @@ impl Trajectory {
                 segment.is_some_and(|it| it.start.speed != 0.0 || it.accel != 0.0)
             }
         }
+    }
+
+    /// From when on, not before `after`, it goes this way first.
+    pub fn goes_at(&self, way: Way, after: Instant) -> Option<Instant> {
+        let now = self.seconds(after);
+        let goes = |(segment, until): &(&Segment, f64)| {
+            let middle = if until.is_finite() { (segment.from + until) / 2.0 } else { f64::MAX };
+            segment.state(middle).speed * way.sign() > 0.0 && *until > now
+        };
+        let (segment, _) = self.spans().find(goes)?;
+        Some(self.instant(segment.from).max(after))
     }
 
     pub(super) fn segments(&self) -> &[Segment] {

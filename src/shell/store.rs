@@ -79,11 +79,13 @@ impl Store {
     pub fn save(&mut self) -> io::Result<()> {
         self.behind = true;
         let beside = beside(&self.target);
-        let mut file = File::create(&beside)?;
+        // Not emptied before it is ours: another run may be about to put it in place.
+        let mut file = File::options().write(true).create(true).truncate(false).open(&beside)?;
         if let Ok(old) = fs::metadata(&self.target) {
             file.set_permissions(old.permissions())?;
         }
         lock(&file)?;
+        file.set_len(0)?;
         file.write_all(self.state.text().as_bytes())?;
         file.sync_all()?;
         fs::rename(&beside, &self.target)?;

@@ -1,7 +1,7 @@
 //! What will happen to an axis by itself, and when: solved for whenever it gets another trajectory.
 
 use super::{Motor, Phase, Stage};
-use crate::motion::{IndexPulse, Switch, Way};
+use crate::motion::{Hit, IndexPulse, Switch, Way};
 use crate::time::Instant;
 
 /// What will happen to an axis that is left alone.
@@ -10,7 +10,7 @@ pub(super) struct Due {
     /// A switch changes.
     edge: Option<Instant>,
     /// It runs against a hard stop.
-    hit: Option<Instant>,
+    hit: Option<Hit>,
     /// It comes off a hard stop.
     leave: Option<Instant>,
     /// It has been pressed against a hard stop as far as a homing step waits for.
@@ -31,8 +31,8 @@ impl Motor {
     /// When something happens to it by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let Due { edge, hit, leave, collision, deviation, soft, index, end, time } = &self.due;
-        let index = index.map(|it| it.at);
-        let all = [*edge, *hit, *leave, *collision, *deviation, *soft, index, *end, *time];
+        let (hit, index) = (hit.map(|it| it.at), index.map(|it| it.at));
+        let all = [*edge, hit, *leave, *collision, *deviation, *soft, index, *end, *time];
         all.into_iter().flatten().min()
     }
 
@@ -57,14 +57,13 @@ impl Motor {
         let wait = self.homing.as_ref().map(|it| it.waits_for()).unwrap_or_default();
         self.due = Due {
             edge: self.next_edge(now),
-            hit: self.machine.next_hit(&self.trajectory, now).map(|it| it.at),
+            hit: self.machine.next_hit(&self.trajectory, now),
             leave: wait.limits_by_stop.then(|| self.next_leave(now)).flatten(),
             collision: wait.collision.and_then(hold),
             deviation: self.wants.deviation.and_then(hold),
-            soft: self.wants.soft_limits.and_then(|[low, high]| {
-                let rising = self.trajectory.crossing(beyond(high), Way::Rising, now);
-                let falling = self.trajectory.crossing(low as f64, Way::Falling, now);
-                [rising, falling].into_iter().flatten().min()
+            soft: self.wants.soft_limits.and_then(|[low, high]| match self.forward {
+                true => self.trajectory.crossing(beyond(high), Way::Rising, now),
+                false => self.trajectory.crossing(low as f64, Way::Falling, now),
             }),
             index: wait.index.and_then(|index| {
                 let way = if index.forward { Way::Rising } else { Way::Falling };
@@ -75,18 +74,22 @@ impl Motor {
         };
     }
 
+    /// The axis is elsewhere than its command was: who knows where the switches lie.
+    pub(super) fn look_at_switches(&mut self, now: Instant) {
+        self.due.edge = Some(now);
+    }
+
     /// The first thing that is due happens. Was there any?
     fn happen(&mut self, now: Instant) -> bool {
         let due = &mut self.due;
-        if take(&mut due.hit, now) {
-            self.told.push_back(Stage::Hits(self.position(now)));
+        if let Some(hit) = due.hit.take_if(|it| it.at <= now) {
+            self.told.push_back(Stage::Hits(hit.position));
             self.home_look(now);
         } else if take(&mut due.leave, now) {
             self.home_look(now);
         } else if take(&mut due.collision, now) {
             self.home_found(now, self.position(now));
-        } else if let Some(pulse) = due.index.filter(|it| it.at <= now) {
-            due.index = None;
+        } else if let Some(pulse) = due.index.take_if(|it| it.at <= now) {
             self.home_found(now, pulse.mark);
         } else if take(&mut due.deviation, now) {
             self.told.push_back(Stage::Deviates);
@@ -106,7 +109,7 @@ impl Motor {
         if self.is_homing() {
             return self.home_stands(now);
         }
-        self.in_position = self.phase == Phase::Moving;
+        self.arrived = self.phase == Phase::Moving;
         self.stand(now);
     }
 
@@ -115,7 +118,7 @@ impl Motor {
         self.phase = Phase::Standing;
         self.look_ahead(now);
         // Where it is to stand: it may still be on its last counts.
-        self.told.push_back(Stage::Stands(self.state(now).position.floor() as i64));
+        self.told.push_back(Stage::Stands(self.commanded(now)));
     }
 
     fn next_edge(&self, now: Instant) -> Option<Instant> {
@@ -127,10 +130,13 @@ impl Motor {
     /// When the trajectory gets `counts` beyond the hard stop that holds the axis.
     fn pressed_at(&self, counts: i64, now: Instant) -> Option<Instant> {
         let [low, high] = self.machine.hard_stop?;
-        let rising = beyond(high.saturating_add(counts));
-        let rising = self.trajectory.crossing(rising, Way::Rising, now);
-        let falling = low.saturating_sub(counts) as f64;
-        let falling = self.trajectory.crossing(falling, Way::Falling, now);
+        let (low, high) = (low.saturating_sub(counts) as f64, beyond(high.saturating_add(counts)));
+        let position = self.trajectory.state(now).position;
+        if position < low || position >= high {
+            return Some(now);
+        }
+        let rising = self.trajectory.crossing(high, Way::Rising, now);
+        let falling = self.trajectory.crossing(low, Way::Falling, now);
         [rising, falling].into_iter().flatten().min()
     }
 

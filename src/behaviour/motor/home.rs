@@ -98,6 +98,7 @@ impl Homing {
         match self.doing {
             Doing::Seeking { .. } => self.step().map(|step| step.forward),
             Doing::Refining { forward } => Some(forward),
+            Doing::Ending if self.order.way != 0 => Some(self.order.way > 0),
             Doing::Braking | Doing::Stuck | Doing::Ending => None,
         }
     }
@@ -209,7 +210,7 @@ impl Motor {
             Doing::Ending => {
                 let origin = homing.origin;
                 self.homing = None;
-                self.in_position = true;
+                self.arrived = true;
                 self.told.push_back(Stage::Homed(origin));
                 self.stand(now);
             }
@@ -333,7 +334,9 @@ impl Motor {
             0 => Trajectory::stop(now, from, accel),
             _ => Trajectory::to_position(now, from, origin.saturating_add(way), how),
         };
+        self.forward = way >= 0;
         self.begin(now, trajectory, Phase::Homing);
+        self.home_limit(now);
     }
 
     fn home_go(&mut self, now: Instant, from: State, speed: f64) {
@@ -373,14 +376,7 @@ impl Motor {
     pub(super) fn next_index(&self, now: Instant, marks: Index, way: Way) -> Option<IndexPulse> {
         let index = self.machine.index.or(Some(marks));
         let machine = Machine { index, ..self.machine };
-        let mut after = now;
         // While the axis turns round it may pass marks the other way.
-        loop {
-            let pulse = machine.next_index(&self.trajectory, after)?;
-            if pulse.way == way {
-                return Some(pulse);
-            }
-            after = pulse.at;
-        }
+        machine.next_index(&self.trajectory, self.trajectory.goes_at(way, now)?)
     }
 }

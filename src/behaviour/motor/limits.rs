@@ -22,8 +22,11 @@ impl Motor {
     }
 
     /// May a motion start in the direction of `way`?
-    pub(super) fn may_go(&self, now: Instant, way: i64) -> Result<(), Ignored> {
-        match way != 0 && self.is_at_limit(now, way > 0) {
+    ///
+    /// # Errors
+    /// There is a limit.
+    pub fn may_go(&self, now: Instant, way: f64) -> Result<(), Ignored> {
+        match way != 0.0 && self.is_at_limit(now, way > 0.0) {
             true => Err(Ignored::Limit),
             false => Ok(()),
         }

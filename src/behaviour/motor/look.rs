@@ -2,7 +2,7 @@
 
 use super::{Motor, Phase};
 use crate::motion::State;
-use crate::time::{Duration, Instant};
+use crate::time::Instant;
 
 impl Motor {
     /// The last whole count reached, in the machine's coordinate.
@@ -14,14 +14,16 @@ impl Motor {
 
     /// Counts per second.
     pub fn speed(&self, now: Instant) -> f64 {
-        // The last half of a count takes for ever: what shows as arrived stands.
-        let stands = self.lag.settles_at(&self.trajectory, 0.0).is_some_and(|at| at <= now);
-        if stands { 0.0 } else { self.feedback(now).speed }
+        self.feedback(now).speed
     }
 
     /// Position and speed as they are, not in whole counts.
     pub fn feedback(&self, now: Instant) -> State {
-        self.machine.hold(self.lag.feedback(&self.trajectory, now))
+        // The last half of a count takes for ever: what shows as arrived stands.
+        match self.settles_at(0.0).is_some_and(|at| at <= now) {
+            true => self.state(now),
+            false => self.machine.hold(self.lag.feedback(&self.trajectory, now)),
+        }
     }
 
     /// How far the axis is behind its command, in counts.
@@ -29,11 +31,16 @@ impl Motor {
         self.trajectory.state(now).position - self.feedback(now).position
     }
 
-    /// Has the last move ended, and has the axis been within `window` counts of its end for `settle`?
-    pub fn is_in_position(&self, now: Instant, window: f64, settle: Duration) -> bool {
-        let settles = || self.lag.settles_at(&self.trajectory, window);
-        let held = || self.machine.hold(self.trajectory.state(now)) != self.trajectory.state(now);
-        self.in_position && settles().is_some_and(|at| at + settle <= now) && !held()
+    /// When the axis is within `window` counts of the end of its last move for good. That move has ended by
+    /// `now`, and nothing holds the axis back.
+    pub fn arrives_at(&self, now: Instant, window: f64) -> Option<Instant> {
+        let command = self.trajectory.state(now);
+        let held = self.machine.hold(command) != command;
+        self.settles_at(window).filter(|_| self.arrived && !held)
+    }
+
+    fn settles_at(&self, window: f64) -> Option<Instant> {
+        self.lag.settles_at(&self.trajectory, window)
     }
 
     /// The speed that a run or a jog was ordered to have, in counts per second; `None` in any other phase.

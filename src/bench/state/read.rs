@@ -3,7 +3,7 @@
 use super::{FORMAT, name};
 use crate::bank::{Kept, KeptRow};
 use crate::bench::Device;
-use crate::model::Model;
+use crate::model::{Model, Shows};
 use crate::problem::{Path, Problem, section, suggest};
 use serde::Deserialize;
 use serde_yaml::Value;
@@ -134,7 +134,8 @@ impl Saved {
             return None;
         };
         let RawRow { value, writes } = *raw;
-        if of_map.volatile || model.wiring.shows(row).is_some() {
+        let computed = model.wiring.shows(row).is_some_and(|it| !matches!(it, Shows::PastAlarm(_)));
+        if of_map.volatile || computed {
             let what = format!("{} is not kept over power-off", of_map.label());
             self.problems.push(Problem::key(path.clone(), what).advise("leave it out"));
             return None;
