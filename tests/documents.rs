@@ -11,9 +11,9 @@ use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
-    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, LimitRule, LimitSource,
-    LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace, Quantity, Setting,
-    SoftLimitRule, Then, Threshold, Word,
+    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, Lasts, LimitRule,
+    LimitSource, LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace, Quantity, Setting,
+    SoftLimitRule, Target, Then, Threshold, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -68,6 +68,10 @@ fn roles() -> String {
     let conditions = "What a segment waits for before the next one of its chain: `axis.segments.position.chain` \
                       gives each its code.";
     section::<Condition>(&mut out, "Conditions", conditions);
+    let targets = "What the target of a position segment is: `axis.segments.position.kind`.";
+    section::<Target>(&mut out, "Targets of segments", targets);
+    let lasts = "How long a velocity segment lasts: `axis.segments.velocity.trigger`.";
+    section::<Lasts>(&mut out, "Triggers of segments", lasts);
     homing(&mut out);
     let alarms =
         "Why a drive trips: `alarms` gives each its number. What has no number is never raised.";

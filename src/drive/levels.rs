@@ -2,8 +2,7 @@
 
 use super::Drive;
 use crate::behaviour::{Phase, Ramp};
-use crate::model::Lasts;
-use crate::words::{Input, Setting};
+use crate::words::{Input, Lasts, Setting};
 
 /// What a level asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

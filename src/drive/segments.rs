@@ -3,9 +3,9 @@
 use super::Drive;
 use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
 use crate::event::{Change, Ignored};
-use crate::model::{ChainRules, Lasts, Link, Target};
+use crate::model::{ChainRules, Link};
 use crate::time::Duration;
-use crate::words::{Condition, Input, Inputs, RowId, Setting};
+use crate::words::{Condition, Input, Inputs, Lasts, RowId, Setting, Target};
 
 impl Drive {
     /// Starts what the edges in `risen` ask for, in the order of the catalogue.
@@ -109,7 +109,7 @@ impl Drive {
         let segments = self.model.wiring.axis.segments.position.as_ref();
         let segment = segments.and_then(|it| it.get(number)).ok_or(Ignored::NoSegment)?;
         let target = segment.kind.get(|row| self.bank.value(&self.model, row));
-        target.ok_or(Ignored::NoSegment)
+        target.filter(|it| *it != Target::None).ok_or(Ignored::NoSegment)
     }
 
     fn step_chain(&mut self) -> Result<(), Ignored> {

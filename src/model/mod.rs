@@ -22,9 +22,8 @@ pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use wiring::{
     Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Hold, Homing,
-    InputWords, Lasts, Limits, Link, Monitor, Number, OutputWords, PerRow, PositionSegment,
-    PositionSegments, Reaction, Segments, Servo, Shown, Shows, Target, Terminals, Triggers,
-    VelocitySegments, Wiring,
+    InputWords, Limits, Link, Monitor, Number, OutputWords, PositionSegment, PositionSegments,
+    Reaction, Segments, Servo, Shown, Shows, Terminals, Triggers, VelocitySegments, Wiring,
 };
 
 /// One drive of one vendor, as data.

@@ -20,21 +20,18 @@ mod user;
 mod wired;
 
 pub use chain::{ChainRules, Link};
+pub use choice::{Choice, Digit};
 pub(super) use compile::compile;
-pub use segments::{
-    Lasts, PerRow, PositionSegment, PositionSegments, Segments, Target, VelocitySegments,
-};
+pub use homing::{Finish, Homing};
+pub use limits::Limits;
+pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments};
 pub(super) use used::check_inert;
 
 use super::RowId;
 use super::line::{Coded, code_in};
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::words::{
-    Action, AlarmCause, HomeStarter, IndexRule, Input, LimitRule, LimitSource, LimitStop, Method,
-    Modifier, OriginPosition, OriginStop, Output, Quantity, Setting, SoftLimitRule, Threshold,
-};
-use std::collections::BTreeMap;
+use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Threshold};
 
 /// What a model is wired to. Lists are in the order of the file, and short.
 #[derive(Debug, Default)]
@@ -304,115 +301,6 @@ impl Axis {
     /// The row that holds `setting`.
     pub fn setting(&self, setting: Setting) -> Option<RowId> {
         self.settings.iter().find(|(it, _)| *it == setting).map(|(_, row)| *row)
-    }
-}
-
-/// Always the same, or as a row says.
-#[derive(Debug)]
-pub enum Choice<T> {
-    /// Always the same.
-    Fixed(T),
-    /// As a row says.
-    Row(Coded<T>),
-}
-
-impl<T: Copy> Choice<T> {
-    /// What it comes to, given the values of rows; `None` where a row holds a code that stands for nothing.
-    pub fn get(&self, value: impl FnOnce(RowId) -> i64) -> Option<T> {
-        match self {
-            Self::Fixed(it) => Some(*it),
-            Self::Row(coded) => coded.decode(value(coded.row)),
-        }
-    }
-
-    fn row(&self) -> Option<RowId> {
-        match self {
-            Self::Fixed(_) => None,
-            Self::Row(coded) => Some(coded.row),
-        }
-    }
-}
-
-/// A row, or one hex digit of it.
-#[derive(Debug, Clone, Copy)]
-pub struct Digit {
-    /// The row.
-    pub row: RowId,
-    /// Which hex digit from the right; `None` is the whole value.
-    pub digit: Option<u8>,
-}
-
-impl Digit {
-    /// The number in `value` of the row.
-    pub fn of(self, value: i64) -> i64 {
-        code_in(value, self.digit)
-    }
-}
-
-/// How the axis looks for its origin.
-#[derive(Debug)]
-pub struct Homing {
-    /// The row with the number of the method; `None` where there is one.
-    pub method: Option<RowId>,
-    /// Methods by number.
-    pub methods: BTreeMap<i64, Method>,
-    /// What starts it; `None` is everything that is wired.
-    pub starter: Option<Coded<HomeStarter>>,
-    /// What a limit on the way means.
-    pub limit: Option<Choice<LimitRule>>,
-    /// What tells that there is one.
-    pub source: Option<Choice<LimitSource>>,
-    /// Whether an index pulse refines the origin.
-    pub index: Option<Choice<IndexRule>>,
-    /// How the axis stands at the origin.
-    pub stop: OriginStop,
-    /// What happens there.
-    pub finish: Option<Choice<Finish>>,
-    /// Factor of the time limit; 0 is none.
-    pub time_factor: Option<Digit>,
-}
-
-impl Homing {
-    /// The rows that it goes by, when it starts.
-    pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
-        let choices = [
-            self.limit.as_ref().and_then(Choice::row),
-            self.source.as_ref().and_then(Choice::row),
-            self.index.as_ref().and_then(Choice::row),
-            self.finish.as_ref().and_then(Choice::row),
-            self.starter.as_ref().map(|it| it.row),
-            self.time_factor.map(|it| it.row),
-            self.method,
-        ];
-        choices.into_iter().flatten()
-    }
-}
-
-/// What happens when the origin is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Finish {
-    /// Go on by `home.way`?
-    pub go: bool,
-    /// What the position register says then.
-    pub position: OriginPosition,
-    /// Does it say that of the origin, and not of where the axis stands in the end?
-    pub of_origin: bool,
-}
-
-/// What limits do.
-#[derive(Debug, Default)]
-pub struct Limits {
-    /// How the axis stops.
-    pub stop: Option<Choice<LimitStop>>,
-    /// When soft limits are in force; `None` is always.
-    pub soft: Option<Choice<SoftLimitRule>>,
-}
-
-impl Limits {
-    /// The rows that they go by.
-    pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
-        let stop = self.stop.as_ref().and_then(Choice::row);
-        stop.into_iter().chain(self.soft.as_ref().and_then(Choice::row))
     }
 }
 

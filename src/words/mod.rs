@@ -6,10 +6,10 @@
 mod action;
 mod alarm;
 mod cause;
-mod condition;
 mod homing;
 mod quantity;
 mod refusal;
+mod segment;
 mod setting;
 mod signal;
 mod threshold;
@@ -17,13 +17,13 @@ mod threshold;
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::AlarmCause;
 pub use cause::Cause;
-pub use condition::Condition;
 pub use homing::{
     Edge, HomeEnd, HomeStarter, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS, Method,
     OriginPosition, OriginStop, Pace, SoftLimitRule, Step, Steps, Then, Until,
 };
 pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
+pub use segment::{Condition, Lasts, Target};
 pub use setting::Setting;
 pub use signal::{Input, Inputs, Output, Outputs};
 pub use threshold::Threshold;

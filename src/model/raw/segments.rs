@@ -1,5 +1,6 @@
 //! Motions by number: tables of segments that signals select and start, and chains of them.
 
+use super::RawChoice;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -26,9 +27,9 @@ pub struct RawPositionSegments {
     /// What a segment goes by, out of the settings of a move, each with its row; `{n}` in the name of a row
     /// is the number of the segment.
     pub quantities: BTreeMap<String, String>,
-    /// Are targets positions or ways? default `relative`.
-    #[serde(default)]
-    pub kind: RawKind,
+    /// Are targets ways or positions: `relative` (default), `absolute` or, for an empty segment, `none`. In the
+    /// name of a row `{n}` is the number of the segment; a value without a code is an empty segment too.
+    pub kind: Option<RawChoice<String>>,
     /// How one segment follows another. Left out: none does.
     pub chain: Option<RawChain>,
     /// What was assumed, and why.
@@ -44,96 +45,10 @@ pub struct RawVelocitySegments {
     /// What a segment goes by, out of the settings of a run, each with its row; `{n}` in the name of a row
     /// is the number of the segment.
     pub quantities: BTreeMap<String, String>,
-    /// Does a segment last while `segment_run` is active, or from its edge on? default `level`.
-    #[serde(default)]
-    pub trigger: RawTrigger,
+    /// Does a segment last while `segment_run` is active, `level` (default), or from its edge on, `edge`?
+    pub trigger: Option<RawChoice<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
-}
-
-/// Are targets positions or ways: always the same, or as a register says.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(
-    untagged,
-    expecting = "kind is relative, absolute or {register: ROW, codes: {0: relative, ...}}"
-)]
-pub enum RawKind {
-    /// Always the same.
-    Fixed(RawTarget),
-    /// As a register says.
-    Register {
-        /// The row; `{n}` in its name is the number of the segment.
-        register: String,
-        /// The kind by value; any other value is an empty segment too.
-        codes: BTreeMap<i64, RawKindCode>,
-    },
-}
-
-impl Default for RawKind {
-    fn default() -> Self {
-        Self::Fixed(RawTarget::Relative)
-    }
-}
-
-/// What a target is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum RawTarget {
-    /// A way to go.
-    Relative,
-    /// A position.
-    Absolute,
-}
-
-/// What a value of the row says about a segment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum RawKindCode {
-    /// Its target is a way to go.
-    Relative,
-    /// Its target is a position.
-    Absolute,
-    /// It is empty: nothing starts it.
-    None,
-}
-
-/// How long a velocity segment lasts: always the same, or as a register says.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(
-    untagged,
-    expecting = "trigger is level, edge or {register: ROW, codes: {0: level, 1: edge}}"
-)]
-pub enum RawTrigger {
-    /// Always the same.
-    Fixed(RawLasts),
-    /// As a register says.
-    Register {
-        /// The row.
-        register: String,
-        /// How long by value.
-        codes: BTreeMap<i64, RawLasts>,
-    },
-}
-
-impl Default for RawTrigger {
-    fn default() -> Self {
-        Self::Fixed(RawLasts::Level)
-    }
-}
-
-/// How long a velocity segment lasts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum RawLasts {
-    /// While the signal is active.
-    Level,
-    /// From the rising edge until something stops it.
-    Edge,
 }
 
 /// How one segment follows another. In the name of each row `{n}` is the number of the segment.

@@ -1,12 +1,54 @@
 //! What is always the same or as a row says: words resolved, whichever it is.
 
 use super::compile::Wirer;
-use super::{Choice, Digit};
-use crate::model::line::{Coded, coded};
+use crate::model::RowId;
+use crate::model::line::{Coded, code_in, coded};
 use crate::model::raw::{RawChoice, RawChosen, RawDigit};
 use crate::problem::{At, Path, Problem};
 use crate::words::Word;
 use std::collections::BTreeMap;
+
+/// Always the same, or as a row says.
+#[derive(Debug)]
+pub enum Choice<T> {
+    /// Always the same.
+    Fixed(T),
+    /// As a row says.
+    Row(Coded<T>),
+}
+
+impl<T: Copy> Choice<T> {
+    /// What it comes to, given the values of rows; `None` where a row holds a code that stands for nothing.
+    pub fn get(&self, value: impl FnOnce(RowId) -> i64) -> Option<T> {
+        match self {
+            Self::Fixed(it) => Some(*it),
+            Self::Row(coded) => coded.decode(value(coded.row)),
+        }
+    }
+
+    pub(super) fn row(&self) -> Option<RowId> {
+        match self {
+            Self::Fixed(_) => None,
+            Self::Row(coded) => Some(coded.row),
+        }
+    }
+}
+
+/// A row, or one hex digit of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Digit {
+    /// The row.
+    pub row: RowId,
+    /// Which hex digit from the right; `None` is the whole value.
+    pub digit: Option<u8>,
+}
+
+impl Digit {
+    /// The number in `value` of the row.
+    pub fn of(self, value: i64) -> i64 {
+        code_in(value, self.digit)
+    }
+}
 
 impl Wirer<'_> {
     pub(super) fn words_chosen<W: Word>(

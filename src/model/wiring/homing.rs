@@ -4,15 +4,66 @@ mod starts;
 mod steps;
 
 use super::compile::Wirer;
-use super::{Choice, Finish, Homing};
+use super::{Choice, Digit};
 use crate::model::RowId;
+use crate::model::line::Coded;
 use crate::model::raw::{RawFinish, RawHoming, RawMethod};
 use crate::problem::{Path, Problem};
 use crate::words::{
-    AlarmCause, IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition, OriginStop, Pace,
-    Setting, Step, Until, Word,
+    AlarmCause, HomeStarter, IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition,
+    OriginStop, Pace, Setting, Step, Until, Word,
 };
 use std::collections::BTreeMap;
+
+/// How the axis looks for its origin.
+#[derive(Debug)]
+pub struct Homing {
+    /// The row with the number of the method; `None` where there is one.
+    pub method: Option<RowId>,
+    /// Methods by number.
+    pub methods: BTreeMap<i64, Method>,
+    /// What starts it; `None` is everything that is wired.
+    pub starter: Option<Coded<HomeStarter>>,
+    /// What a limit on the way means.
+    pub limit: Option<Choice<LimitRule>>,
+    /// What tells that there is one.
+    pub source: Option<Choice<LimitSource>>,
+    /// Whether an index pulse refines the origin.
+    pub index: Option<Choice<IndexRule>>,
+    /// How the axis stands at the origin.
+    pub stop: OriginStop,
+    /// What happens there.
+    pub finish: Option<Choice<Finish>>,
+    /// Factor of the time limit; 0 is none.
+    pub time_factor: Option<Digit>,
+}
+
+impl Homing {
+    /// The rows that it goes by, when it starts.
+    pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
+        let choices = [
+            self.limit.as_ref().and_then(Choice::row),
+            self.source.as_ref().and_then(Choice::row),
+            self.index.as_ref().and_then(Choice::row),
+            self.finish.as_ref().and_then(Choice::row),
+            self.starter.as_ref().map(|it| it.row),
+            self.time_factor.map(|it| it.row),
+            self.method,
+        ];
+        choices.into_iter().flatten()
+    }
+}
+
+/// What happens when the origin is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Finish {
+    /// Go on by `home.way`?
+    pub go: bool,
+    /// What the position register says then.
+    pub position: OriginPosition,
+    /// Does it say that of the origin, and not of where the axis stands in the end?
+    pub of_origin: bool,
+}
 
 impl Wirer<'_> {
     pub(super) fn homing(&mut self, raw: &RawHoming) {

@@ -1,10 +1,28 @@
 //! What the limits of an axis do: words resolved, and whether there is a limit at all.
 
+use super::Choice;
 use super::compile::Wirer;
-use super::{Choice, Limits};
+use crate::model::RowId;
 use crate::model::raw::RawLimits;
 use crate::problem::{Path, Problem};
-use crate::words::{AlarmCause, Input, Output, Setting, SoftLimitRule, Word};
+use crate::words::{AlarmCause, Input, LimitStop, Output, Setting, SoftLimitRule, Word};
+
+/// What limits do.
+#[derive(Debug, Default)]
+pub struct Limits {
+    /// How the axis stops.
+    pub stop: Option<Choice<LimitStop>>,
+    /// When soft limits are in force; `None` is always.
+    pub soft: Option<Choice<SoftLimitRule>>,
+}
+
+impl Limits {
+    /// The rows that they go by.
+    pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
+        let stop = self.stop.as_ref().and_then(Choice::row);
+        stop.into_iter().chain(self.soft.as_ref().and_then(Choice::row))
+    }
+}
 
 impl Wirer<'_> {
     pub(super) fn limits(&mut self, raw: Option<&RawLimits>) {

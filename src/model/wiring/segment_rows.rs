@@ -1,16 +1,15 @@
 //! The rows of segments, found and checked.
 
+use super::choice::Choice;
 use super::compile::Wirer;
 use super::segment_signals::SELECTS;
-use super::segments::{Lasts, PerRow, PositionSegment, PositionSegments, Target, VelocitySegments};
+use super::segments::{PositionSegment, PositionSegments, VelocitySegments};
 use crate::model::expand::number;
-use crate::model::line::{Coded, coded};
 use crate::model::raw::{
-    RawKind, RawKindCode, RawLasts, RawPositionSegments, RawSegments, RawTarget, RawTrigger,
-    RawVelocitySegments,
+    RawChoice, RawChosen, RawPositionSegments, RawSegments, RawVelocitySegments,
 };
 use crate::problem::{Path, Problem, suggest};
-use crate::words::{Input, RowId, Setting, Word};
+use crate::words::{Input, Lasts, RowId, Setting, Target, Word};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -56,12 +55,13 @@ impl Wirer<'_> {
         let chain = raw.chain.as_ref().map(|raw| self.chain_rules(raw, &path.key("chain")));
         let list = self.each(first..=last, |wirer, n| {
             let settings = wirer.segment_settings(&raw.quantities, n, &MOVE, path);
-            let kind = wirer.kind(&raw.kind, n, &path.key("kind"));
+            let kind = wirer.kind(raw.kind.as_ref(), n, &path.key("kind"));
             let link = match (&raw.chain, &chain) {
                 (Some(raw), Some(rules)) => wirer.link(raw, rules, n, &path.key("chain")),
                 _ => None,
             };
-            Some(PositionSegment { settings, kind: kind?, link })
+            let kind = kind.unwrap_or(Choice::Fixed(Target::Relative));
+            Some(PositionSegment { settings, kind, link })
         });
         let list = list.into_iter().flatten().collect();
         Some(PositionSegments { first, list, chain })
@@ -76,7 +76,11 @@ impl Wirer<'_> {
         let [first, last] = self.numbers(raw.n, false, path, inputs)?;
         let list = self
             .each(first..=last, |wirer, n| wirer.segment_settings(&raw.quantities, n, &RUN, path));
-        let trigger = self.trigger(&raw.trigger, &path.key("trigger"))?;
+        let path = path.key("trigger");
+        let trigger = match &raw.trigger {
+            None => Choice::Fixed(Lasts::Level),
+            raw => self.words_chosen(raw, "trigger of a run", &path)?,
+        };
         Some(VelocitySegments { first, list, trigger })
     }
 
@@ -159,44 +163,20 @@ impl Wirer<'_> {
         settings
     }
 
-    fn kind(&mut self, raw: &RawKind, n: u16, path: &Path) -> Option<PerRow<Target>> {
-        match raw {
-            RawKind::Fixed(RawTarget::Relative) => Some(PerRow::Fixed(Target::Relative)),
-            RawKind::Fixed(RawTarget::Absolute) => Some(PerRow::Fixed(Target::Absolute)),
-            RawKind::Register { register, codes } => {
-                self.coded_row(&number(register, n), codes, path, |code| match code {
-                    RawKindCode::Relative => Some(Target::Relative),
-                    RawKindCode::Absolute => Some(Target::Absolute),
-                    RawKindCode::None => None,
-                })
-            }
-        }
-    }
-
-    fn trigger(&mut self, raw: &RawTrigger, path: &Path) -> Option<PerRow<Lasts>> {
-        let lasts = |raw: RawLasts| match raw {
-            RawLasts::Level => Lasts::Level,
-            RawLasts::Edge => Lasts::Edge,
-        };
-        match raw {
-            RawTrigger::Fixed(raw) => Some(PerRow::Fixed(lasts(*raw))),
-            RawTrigger::Register { register, codes } => {
-                self.coded_row(register, codes, path, |raw| Some(lasts(raw)))
-            }
-        }
-    }
-
-    /// What the values of a row stand for, without those that stand for nothing.
-    fn coded_row<R: Copy, T>(
+    fn kind(
         &mut self,
-        register: &str,
-        raw: &BTreeMap<i64, R>,
+        raw: Option<&RawChoice<String>>,
+        n: u16,
         path: &Path,
-        meaning: impl Fn(R) -> Option<T>,
-    ) -> Option<PerRow<T>> {
-        let row = self.row(register, &path.key("register"))?;
-        coded(Some(row), None, raw, self.rows, path, self.problems);
-        let codes = raw.iter().filter_map(|(code, raw)| Some((*code, meaning(*raw)?))).collect();
-        Some(PerRow::Row(Coded { row, digit: None, codes }))
+    ) -> Option<Choice<Target>> {
+        let of_segment = match raw {
+            None => return Some(Choice::Fixed(Target::Relative)),
+            Some(RawChoice::Row(of_all)) => {
+                let register = number(&of_all.register, n);
+                RawChoice::Row(RawChosen { register, ..of_all.clone() })
+            }
+            Some(fixed) => fixed.clone(),
+        };
+        self.words_chosen(&Some(of_segment), "kind of target", path)
     }
 }

@@ -1,8 +1,8 @@
 //! Motions by number, compiled: which rows each segment goes by.
 
 use super::chain::{ChainRules, Link};
-use crate::model::line::Coded;
-use crate::words::{RowId, Setting};
+use super::choice::Choice;
+use crate::words::{Lasts, RowId, Setting, Target};
 
 /// Motions by number.
 #[derive(Debug, Default)]
@@ -29,19 +29,10 @@ pub struct PositionSegments {
 pub struct PositionSegment {
     /// The rows that it goes by.
     pub settings: Vec<(Setting, RowId)>,
-    /// What its target is; nothing where it is empty.
-    pub kind: PerRow<Target>,
+    /// What its target is.
+    pub kind: Choice<Target>,
     /// How it gives way to the next.
     pub link: Option<Link>,
-}
-
-/// What the target of a move is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// A way to go.
-    Relative,
-    /// A position.
-    Absolute,
 }
 
 /// Runs by number.
@@ -52,42 +43,7 @@ pub struct VelocitySegments {
     /// The rows that each goes by.
     pub list: Vec<Vec<(Setting, RowId)>>,
     /// How long one lasts.
-    pub trigger: PerRow<Lasts>,
-}
-
-/// How long a run lasts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lasts {
-    /// While its signal is active.
-    Level,
-    /// From the rising edge of its signal until something stops it.
-    Edge,
-}
-
-/// Something that is always the same, or as a row says.
-#[derive(Debug)]
-pub enum PerRow<T> {
-    /// Always the same.
-    Fixed(T),
-    /// As a row says.
-    Row(Coded<T>),
-}
-
-impl<T: Copy> PerRow<T> {
-    /// What it is, given the values of rows; nothing where a row holds a value that stands for nothing.
-    pub fn get(&self, value: impl FnOnce(RowId) -> i64) -> Option<T> {
-        match self {
-            Self::Fixed(it) => Some(*it),
-            Self::Row(coded) => coded.decode(value(coded.row)),
-        }
-    }
-
-    fn row(&self) -> Option<RowId> {
-        match self {
-            Self::Fixed(_) => None,
-            Self::Row(coded) => Some(coded.row),
-        }
-    }
+    pub trigger: Choice<Lasts>,
 }
 
 impl PositionSegments {

@@ -1,0 +1,29 @@
+//! What models say about segments: what a target is, how long a run lasts, what a chain waits for.
+
+use super::words;
+
+words! {
+    /// A condition for the next segment of a chain.
+    Condition {
+        Delay "delay" "so much time has passed since the axis stands in position",
+        Step "step" "input `segment_step` has risen since the segment started",
+        Position "position" "the axis has reached that position since the segment started",
+    }
+}
+
+words! {
+    /// What the target of a position segment is.
+    Target {
+        Relative "relative" "a way to go",
+        Absolute "absolute" "a position",
+        None "none" "the segment is empty: nothing starts it",
+    }
+}
+
+words! {
+    /// How long a velocity segment lasts.
+    Lasts {
+        Level "level" "while `segment_run` is active",
+        Edge "edge" "from the rising edge of `segment_run` until something stops it",
+    }
+}
