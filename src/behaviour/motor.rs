@@ -248,6 +248,7 @@ impl Motor {
 
     /// Slows down to a standstill with a slope of its own.
     pub fn stop_with(&mut self, now: Instant, decel: f64) {
+        self.jog_spent = true;
         if self.wants.power && self.is_moving() {
             self.lose_origin(HomeEnd::Stopped);
             let trajectory = Trajectory::stop(now, self.state(now), decel);

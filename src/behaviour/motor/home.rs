@@ -145,7 +145,7 @@ impl Motor {
         }
         self.decel = homing.order.accel;
         self.homing = Some(Box::new(homing));
-        self.begin(now, Trajectory::halt(now, self.feedback(now)), Phase::Homing);
+        self.begin(now, Trajectory::halt(now, self.whereabouts(now)), Phase::Homing);
         self.seek(now);
         self.advance(now);
         Ok(())

@@ -14,15 +14,19 @@ impl Motor {
 
     /// Counts per second.
     pub fn speed(&self, now: Instant) -> f64 {
-        self.feedback(now).speed
+        self.whereabouts(now).speed
     }
 
     /// Position and speed as they are, not in whole counts.
     pub fn feedback(&self, now: Instant) -> State {
-        // The last half of a count takes for ever: what shows as arrived stands.
+        self.machine.hold(self.lag.feedback(&self.trajectory, now))
+    }
+
+    /// The same, but that an axis stands which shows as arrived: the last half of a count takes for ever.
+    pub(super) fn whereabouts(&self, now: Instant) -> State {
         match self.settles_at(0.0).is_some_and(|at| at <= now) {
             true => self.state(now),
-            false => self.machine.hold(self.lag.feedback(&self.trajectory, now)),
+            false => self.feedback(now),
         }
     }
 

@@ -82,6 +82,9 @@ impl Bench {
         }
         self.motor.follow(self.now, Wants { switches, ..self.wants });
         self.hear();
+        if self.motor.take_edge(self.now) {
+            self.follow();
+        }
     }
 
     fn hear(&mut self) {
