@@ -168,6 +168,8 @@ pub struct Transaction {
 pub enum Change {
     /// Power came on.
     PoweredOn,
+    /// Power went off.
+    PoweredOff,
     /// Initialised: it can be enabled.
     Ready,
     /// The power stage went on or off.
@@ -363,6 +365,22 @@ pub enum Change {
         /// Why.
         why: Ignored,
     },
+    /// Something is wrong with the device from now on, or no longer.
+    Trouble {
+        /// What.
+        trouble: Trouble,
+        /// From now on?
+        on: bool,
+    },
+    /// The contact on an input terminal begins to bounce.
+    Bounces {
+        /// Index from 0.
+        index: u8,
+        /// So many times it leaves its level and comes back.
+        times: u16,
+        /// From one edge to the next.
+        every: Duration,
+    },
     /// An input terminal got another level.
     Terminal {
         /// Index from 0.
@@ -370,6 +388,22 @@ pub enum Change {
         /// Carries a signal?
         signal: bool,
     },
+}
+
+/// What can be wrong with a device, apart from its line, for as long as somebody says so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Trouble {
+    /// The cause of an alarm stands: the drive trips, and no reset helps.
+    Cause(AlarmCause),
+    /// The axis can't leave the count at which it is.
+    Blocked,
+    /// There is no feedback: position and speed stay as they were seen last, and the drive trips if it has an
+    /// alarm for that.
+    EncoderLost,
+    /// Position and speed stay as they were seen last, and the drive does not notice.
+    Frozen,
+    /// The input terminal of this index, from 0, keeps its level.
+    Stuck(u8),
 }
 
 /// Why an order does nothing.

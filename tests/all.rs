@@ -19,4 +19,5 @@ mod source;
 mod state;
 mod tidy;
 mod transcripts;
+mod troubles;
 mod words;

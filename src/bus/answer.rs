@@ -44,7 +44,7 @@ impl Bus {
 
     fn take(&mut self, link: LinkId) -> Option<Taken> {
         let it = self.links.get_mut(&link)?;
-        let sole = it.sole && self.drives.len() == 1;
+        let sole = it.sole && self.drives.len() == 1 && self.drives[0].is_powered();
         Some(match it.line.next(self.now, &self.units)? {
             Heard::Request(adu) => request(adu),
             // 255 on TCP: the only drive there is.

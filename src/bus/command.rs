@@ -1,8 +1,10 @@
 //! What can be done to drives from outside their line: by a test, a bench, later a control port.
 
 use super::Bus;
-use crate::event::DriveId;
+use crate::drive::Drive;
+use crate::event::{DriveId, Trouble};
 use crate::fault::Rule;
+use crate::time::Duration;
 use crate::words::{AlarmCause, Word};
 use thiserror::Error;
 
@@ -24,6 +26,33 @@ pub enum Command {
         drive: DriveId,
         /// Why.
         cause: AlarmCause,
+    },
+    /// Something is wrong with the device from now on, or no longer.
+    Trouble {
+        /// Which drive.
+        drive: DriveId,
+        /// What.
+        trouble: Trouble,
+        /// From now on?
+        on: bool,
+    },
+    /// Have the contact on an input terminal bounce.
+    Bounce {
+        /// Which drive.
+        drive: DriveId,
+        /// Which terminal, from 0.
+        index: u8,
+        /// So many times it leaves its level and comes back.
+        times: u16,
+        /// From one edge to the next; the first comes at once.
+        every: Duration,
+    },
+    /// Power on or off; all stations of the device with it. What is there already stays.
+    Power {
+        /// Which drive.
+        drive: DriveId,
+        /// On?
+        on: bool,
     },
     /// Power off and on; all stations of the device with it.
     PowerCycle {
@@ -57,6 +86,9 @@ pub enum CommandError {
         /// There are this many.
         have: usize,
     },
+    /// Nothing can happen in a drive that has no power.
+    #[error("the drive has no power")]
+    NoPower,
     /// The model has no alarm for the cause.
     #[error("the model has no alarm for `{0}`")]
     NoAlarm(&'static str),
@@ -76,11 +108,25 @@ pub enum CommandError {
     },
 }
 
+/// Makes sure that there is such an input terminal.
+fn terminal(drive: &Drive, index: u8) -> Result<(), CommandError> {
+    let terminals = drive.model().wiring.input_terminals.as_ref();
+    let have = terminals.map_or(0, |terminals| terminals.functions.len());
+    if usize::from(index) < have {
+        Ok(())
+    } else {
+        Err(CommandError::NoTerminal { got: index, have })
+    }
+}
+
 impl Bus {
     pub(super) fn carry_out(&mut self, command: Command) -> Result<Reply, CommandError> {
         let id = match command {
             Command::Terminal { drive, .. }
             | Command::Raise { drive, .. }
+            | Command::Trouble { drive, .. }
+            | Command::Bounce { drive, .. }
+            | Command::Power { drive, .. }
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
             Command::RemoveFault(name) => return self.remove_fault(name),
@@ -89,21 +135,37 @@ impl Bus {
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
         match command {
             Command::Terminal { index, signal, .. } => {
-                let terminals = drive.model().wiring.input_terminals.as_ref();
-                let have = terminals.map_or(0, |terminals| terminals.functions.len());
-                if usize::from(index) >= have {
-                    return Err(CommandError::NoTerminal { got: index, have });
-                }
+                terminal(drive, index)?;
                 drive.set_terminal(now, index, signal);
             }
+            Command::Bounce { index, times, every, .. } => {
+                terminal(drive, index)?;
+                drive.bounce_terminal(now, index, times, every);
+            }
+            Command::Trouble { trouble, on, .. } => {
+                if let Trouble::Stuck(index) = trouble {
+                    terminal(drive, index)?;
+                }
+                if let (false, Trouble::Cause(cause)) =
+                    (drive.set_trouble(now, trouble, on), trouble)
+                {
+                    return Err(CommandError::NoAlarm(cause.name()));
+                }
+            }
             Command::Raise { cause, .. } => {
+                if !drive.is_powered() {
+                    return Err(CommandError::NoPower);
+                }
                 if !drive.raise(now, cause) {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }
-            Command::PowerCycle { .. } => {
-                let device = self.devices[usize::from(id.0)];
-                self.power_cycle(device);
+            Command::Power { on: true, .. } if drive.is_powered() => {}
+            Command::Power { on: true, .. } | Command::PowerCycle { .. } => {
+                self.power_cycle(self.devices[usize::from(id.0)]);
+            }
+            Command::Power { on: false, .. } => {
+                self.power_off(self.devices[usize::from(id.0)]);
             }
             // These are not for a drive and were carried out above.
             Command::AddFault(_) | Command::RemoveFault(_) => {}

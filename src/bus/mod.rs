@@ -235,8 +235,10 @@ impl Bus {
         }
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
-            moved |=
-                matches!(change, Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn);
+            moved |= matches!(
+                change,
+                Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn | Change::PoweredOff
+            );
             let unit = self.drives[usize::from(id.0)].unit();
             self.emit(What::Drive { drive: id, unit, change });
         }
@@ -257,6 +259,16 @@ impl Bus {
         }
     }
 
+    /// Power off for all stations of `device`.
+    fn power_off(&mut self, device: u16) {
+        for i in 0..self.drives.len() {
+            if self.devices[i] == device {
+                self.drives[i].power_off(self.now);
+                self.after_drive(DriveId(i as u16));
+            }
+        }
+    }
+
     /// Where all drives of a serial line agree on another mode, the line goes with them: a lone drive takes
     /// its port along.
     fn follow_drives(&mut self) {
@@ -272,7 +284,7 @@ impl Bus {
 
     /// Does the drive hear what is said on the line?
     fn hears(&self, drive: &Drive) -> bool {
-        self.mode.is_none() || drive.mode() == self.mode
+        drive.is_powered() && (self.mode.is_none() || drive.mode() == self.mode)
     }
 
     /// Finds out again who answers to what. Of two drives with one address the first answers.

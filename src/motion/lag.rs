@@ -40,6 +40,11 @@ impl Lag {
         Self { deviation: if self.gain.is_some() { deviation } else { 0.0 }, ..self }
     }
 
+    /// Is the axis behind at all? Then it makes up for what it is behind.
+    pub fn makes_up(&self) -> bool {
+        self.gain.is_some()
+    }
+
     /// With another gain from the beginning of the trajectory on.
     #[must_use]
     pub fn with_gain(self, gain: f64) -> Self {

@@ -151,3 +151,18 @@ proptest! {
         prop_assert!(a.since(b).max(b.since(a)) < Duration::from_millis(1), "{} {}", a.as_nanos(), b.as_nanos());
     }
 }
+
+proptest! {
+    #[test]
+    fn what_is_left_goes_on(of in trajectories(), part in 0.0..1.0, by in -5000.0..5000.0) {
+        let all = instants(&of, 100);
+        let now = all[(part * 99.0) as usize];
+        let left = of.left(now, by);
+        for at in all.into_iter().filter(|at| *at >= now) {
+            let (was, is) = (of.state(at), left.state(at));
+            prop_assert!((is.position - was.position - by).abs() < 1e-3, "{:?} {:?}", was, is);
+            prop_assert!((is.speed - was.speed).abs() < 1e-2, "{:?} {:?}", was, is);
+        }
+        prop_assert_eq!(left.end(), of.end().map(|end| end.max(now)));
+    }
+}
