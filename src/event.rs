@@ -91,6 +91,8 @@ pub enum What {
         /// How often it has acted by now.
         hit: u64,
     },
+    /// A step of a scenario.
+    Step(RemarkId),
     /// A drive did something without being asked on this line, or as a consequence.
     Drive {
         /// Who.
@@ -100,6 +102,32 @@ pub enum What {
         /// What.
         change: Change,
     },
+}
+
+/// Number of a remark on its bus, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RemarkId(pub u32);
+
+/// What is to be told of a step of a scenario.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// Its name.
+    pub step: String,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Why it failed.
+    pub what: String,
+}
+
+/// What became of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// What it waited for has come.
+    Begins,
+    /// What it expects holds.
+    Passed,
+    /// It does not hold, or something could not be done.
+    Failed,
 }
 
 /// Number of a fault rule on its bus, from 0; none is used for another name.

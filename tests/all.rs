@@ -11,6 +11,7 @@ mod ladder;
 mod line;
 mod problems;
 mod properties;
+mod scenario;
 #[cfg(feature = "cli")]
 mod schema;
 #[cfg(feature = "cli")]

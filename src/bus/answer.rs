@@ -79,6 +79,7 @@ impl Bus {
                 Ok(response) => (response.encode(), None),
                 Err(refusal) => (exception(refusal.code), Some(refusal)),
             };
+            self.count(id, function);
             // What an answer confirms must be there after a power failure.
             self.keep(id);
             self.send(link, adu, answer, strike.as_mut());

@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::drive::Drive;
-use crate::event::{DriveId, Trouble};
+use crate::event::{DriveId, Remark, RemarkId, Trouble, What};
 use crate::fault::Rule;
 use crate::time::Duration;
 use crate::words::{AlarmCause, Word};
@@ -63,6 +63,8 @@ pub enum Command {
     AddFault(Rule),
     /// Take the fault rule of that name off the line. What it holds back still leaves.
     RemoveFault(String),
+    /// Tell of a step of a scenario.
+    Tell(Remark),
 }
 
 /// The answer to a command that was carried out.
@@ -130,6 +132,7 @@ impl Bus {
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
             Command::RemoveFault(name) => return self.remove_fault(name),
+            Command::Tell(remark) => return Ok(self.remember(remark)),
         };
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
@@ -168,9 +171,20 @@ impl Bus {
                 self.power_off(self.devices[usize::from(id.0)]);
             }
             // These are not for a drive and were carried out above.
-            Command::AddFault(_) | Command::RemoveFault(_) => {}
+            Command::AddFault(_) | Command::RemoveFault(_) | Command::Tell(_) => {}
         }
         Ok(Reply::Done)
+    }
+
+    fn remember(&mut self, remark: Remark) -> Reply {
+        // A step that repeats says the same again and again.
+        let known = self.remarks.iter().position(|it| *it == remark);
+        let number = known.unwrap_or_else(|| {
+            self.remarks.push(remark);
+            self.remarks.len() - 1
+        });
+        self.emit(What::Step(RemarkId(number as u32)));
+        Reply::Done
     }
 
     fn add_fault(&mut self, rule: Rule) -> Result<Reply, CommandError> {

@@ -9,15 +9,17 @@
 mod agenda;
 mod answer;
 mod command;
+mod heard;
 mod held;
 mod output;
 mod weather;
 
 pub use command::{Command, CommandError, Reply};
+pub use heard::Heard;
 pub use output::{LinkId, Output, Wake, WakeReason};
 
 use crate::drive::{Drive, Setup};
-use crate::event::{Change, DriveId, Event, What};
+use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
 use crate::fault::Faults;
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
@@ -26,6 +28,7 @@ use crate::time::Instant;
 use crate::wire::BROADCAST;
 use agenda::Agenda;
 use held::Held;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -41,6 +44,10 @@ pub struct Bus {
     drives: Vec<Drive>,
     /// Device that each drive belongs to: the stations of one device share their power.
     devices: Vec<u16>,
+    /// What each drive has heard.
+    heard: Vec<Heard>,
+    /// What was told of steps.
+    remarks: Vec<Remark>,
     /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
     mode: Option<Mode>,
     units: Units,
@@ -67,6 +74,8 @@ impl Bus {
             next_link: 0,
             drives: Vec::new(),
             devices: Vec::new(),
+            heard: Vec::new(),
+            remarks: Vec::new(),
             mode: None,
             units: Units::new(),
             by_unit: [None; 256],
@@ -83,6 +92,7 @@ impl Bus {
         let id = DriveId(self.drives.len() as u16);
         self.drives.push(Drive::new(model, setup, self.now));
         self.devices.push(device);
+        self.heard.push(Heard::default());
         self.readdress();
         self.after_drive(id);
         id
@@ -191,6 +201,16 @@ impl Bus {
     pub fn catch_up(&mut self) {
         let now = self.now;
         self.drives.iter_mut().for_each(|drive| drive.advance_to(now));
+    }
+
+    /// As [`Drive::foresee`].
+    pub fn foresee(&mut self, id: DriveId, side: impl Fn(&Drive) -> Ordering) -> Option<Instant> {
+        self.drives[usize::from(id.0)].foresee(side)
+    }
+
+    /// What was told of a step.
+    pub fn remark(&self, id: RemarkId) -> &Remark {
+        &self.remarks[id.0 as usize]
     }
 
     /// The next thing that leaves the bus.

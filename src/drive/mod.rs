@@ -6,6 +6,7 @@
 //! other drive.
 
 mod alarms;
+mod foresee;
 mod home;
 mod levels;
 mod memory;

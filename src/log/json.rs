@@ -4,7 +4,7 @@ use super::rows::{self, Item};
 use super::{text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Transaction, Trouble, What};
+use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
 use crate::model::Row;
 use crate::wire::hex::to_hex;
 use crate::words::{Refusal, Word};
@@ -67,6 +67,19 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             let mut fields = json!({"rule": name, "kind": kind.name(), "unit": unit, "hit": hit});
             merge(&mut fields, mishap_fields(*mishap));
             ("fault", fields)
+        }
+        What::Step(id) => {
+            let remark = bus.remark(*id);
+            let outcome = match remark.outcome {
+                Outcome::Begins => "begins",
+                Outcome::Passed => "passed",
+                Outcome::Failed => "failed",
+            };
+            let mut fields = json!({"step": remark.step, "outcome": outcome});
+            if !remark.what.is_empty() {
+                merge(&mut fields, json!({"why": remark.what}));
+            }
+            ("step", fields)
         }
         What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
     }

@@ -3,7 +3,7 @@
 use super::{rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Transaction, Trouble, What};
+use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
 use crate::serial::Mode;
 use crate::wire::hex::to_hex;
 use crate::words::{Then, Word};
@@ -61,6 +61,14 @@ fn what(what: &What, bus: &Bus) -> String {
         What::Fault { rule, unit, mishap, hit } => {
             let (name, _) = bus.faults().told(*rule);
             format!("fault {name}: {} (hit {hit})", mishap_text(*unit, *mishap))
+        }
+        What::Step(id) => {
+            let remark = bus.remark(*id);
+            match remark.outcome {
+                Outcome::Begins => format!("step {}", remark.step),
+                Outcome::Passed => format!("step {} passed", remark.step),
+                Outcome::Failed => format!("step {} failed: {}", remark.step, remark.what),
+            }
         }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))

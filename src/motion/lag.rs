@@ -8,6 +8,11 @@ use super::trajectory::Segment;
 use super::{State, Trajectory, search};
 use crate::time::{Duration, Instant};
 
+/// Stretches between two turns are looked at in so many parts: a position may turn round inside one.
+const PARTS: u32 = 16;
+
+const END_OF_TIME: Instant = Instant::from_nanos(u64::MAX);
+
 /// How far the feedback is behind the trajectory that it belongs to. Goes with each new trajectory by
 /// [`Lag::with_deviation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,6 +109,27 @@ impl Lag {
             search::first(after, self.turns(of), exceeds, |()| after)
         };
         [beyond(1.0), beyond(-1.0)].into_iter().flatten().min()
+    }
+
+    /// Instants after `after` between which neither speed nor deviation turns round, up to the end of time, and
+    /// some between them.
+    pub fn marks(&self, of: &Trajectory, after: Instant) -> Vec<Instant> {
+        let seams = of.spans().map(|(_, until)| of.instant(until));
+        let turns = self.turns(of).map(|(at, ())| at);
+        let mut turns: Vec<_> = seams.chain(turns).filter(|at| *at > after).collect();
+        turns.sort_unstable();
+        turns.dedup();
+        let mut marks = Vec::with_capacity((turns.len() + 1) * PARTS as usize);
+        let mut from = after;
+        for to in turns {
+            let part = to.since(from) / PARTS;
+            marks.extend((1..PARTS).map(|i| from + part * i));
+            marks.push(to);
+            from = to;
+        }
+        // What is left decays, or goes on for ever.
+        marks.extend((from < END_OF_TIME).then_some(END_OF_TIME));
+        marks
     }
 
     /// Instants between which the deviation is monotone.

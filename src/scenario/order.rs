@@ -85,9 +85,8 @@ impl Order {
             ["freeze", level] => Self::Trouble(Trouble::Frozen, is_on(level)?),
             ["power", level] => Self::Power(is_on(level)?),
             ["power_cycle"] => Self::PowerCycle,
-            ["fault", ..] if words.len() > 1 => {
-                Self::Fault(text.trim_start().trim_start_matches("fault").trim().into())
-            }
+            // A value may have blanks inside.
+            ["fault", spec @ ..] if !spec.is_empty() => Self::Fault(spec.join(" ")),
             ["no_fault", name] => Self::NoFault((*name).into()),
             [verb, ..] => return Err(no_form(verb)),
             [] => return Err(no_form("")),
