@@ -111,3 +111,19 @@ fn a_move_goes_on_when_it_is_free() {
         assert!((position - end).abs() <= 1, "{model}: {position}\n{}", rig.log());
     }
 }
+
+/// On Modbus TCP unit 255 is whoever is there; without power nobody is.
+#[test]
+fn a_drive_without_power_is_not_there_on_tcp_either() {
+    use crate::kit::drain;
+    use drivemu::line::Framing;
+    use drivemu::wire::mbap;
+    let mut bus = drive("yako-closed-loop").fresh_bus();
+    let link = bus.open(Framing::Mbap);
+    for (on, answers) in [(true, true), (false, false), (true, true)] {
+        bus.command(bus.now(), Command::Power { drive: FIRST, on }).expect("it can be");
+        drain(&mut bus);
+        bus.receive(bus.now(), link, &mbap::encode(1, 0xFF, &[3, 0, 6, 0, 1]));
+        assert_eq!(!drain(&mut bus).sent.is_empty(), answers, "power {on}");
+    }
+}

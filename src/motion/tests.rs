@@ -166,3 +166,18 @@ proptest! {
         prop_assert_eq!(left.end(), of.end().map(|end| end.max(now)));
     }
 }
+
+proptest! {
+    /// Whoever waits for a count is told of the first nanosecond that shows it.
+    #[test]
+    fn counts_are_met(of in trajectories(), count in -20_000i64..20_000) {
+        let side = |at| of.position(at).cmp(&count);
+        let found = first_equal(of.begin, &Lag::NONE.marks(&of, of.begin), side);
+        if let Some(at) = found {
+            prop_assert!(side(at).is_eq() && side(at - Duration::from_nanos(1)).is_ne());
+        }
+        let looks = instants(&of, 1000).into_iter().skip_while(|at| side(*at).is_eq());
+        let mut before = looks.take_while(|at| found.is_none_or(|found| *at < found));
+        prop_assert!(before.all(|at| side(at).is_ne()), "{:?}", found);
+    }
+}

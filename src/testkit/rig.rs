@@ -119,7 +119,8 @@ impl Rig {
         Ok(Self::framed(self.line, self.framing, self.seed))
     }
 
-    /// The same line switched on anew, with the steps that the scenario in `text` has for it.
+    /// The same line switched on anew, with the steps that the scenario in `text` has for it. Whatever else is to be
+    /// changed about the line comes before that.
     ///
     /// # Errors
     /// Everything that is wrong with the scenario, or with this line for it.
