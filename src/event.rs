@@ -91,6 +91,8 @@ pub enum What {
         /// How often it has acted by now.
         hit: u64,
     },
+    /// A step of a scenario.
+    Step(RemarkId),
     /// A drive did something without being asked on this line, or as a consequence.
     Drive {
         /// Who.
@@ -100,6 +102,32 @@ pub enum What {
         /// What.
         change: Change,
     },
+}
+
+/// Number of a remark on its bus, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RemarkId(pub u32);
+
+/// What is to be told of a step of a scenario.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// Its name.
+    pub step: String,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Why it failed.
+    pub what: String,
+}
+
+/// What became of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// What it waited for has come.
+    Begins,
+    /// What it expects holds.
+    Passed,
+    /// It does not hold, or something could not be done.
+    Failed,
 }
 
 /// Number of a fault rule on its bus, from 0; none is used for another name.
@@ -168,6 +196,8 @@ pub struct Transaction {
 pub enum Change {
     /// Power came on.
     PoweredOn,
+    /// Power went off.
+    PoweredOff,
     /// Initialised: it can be enabled.
     Ready,
     /// The power stage went on or off.
@@ -363,6 +393,22 @@ pub enum Change {
         /// Why.
         why: Ignored,
     },
+    /// Something is wrong with the device from now on, or no longer.
+    Trouble {
+        /// What.
+        trouble: Trouble,
+        /// From now on?
+        on: bool,
+    },
+    /// The contact on an input terminal begins to bounce.
+    Bounces {
+        /// Index from 0.
+        index: u8,
+        /// So many times it leaves its level and comes back.
+        times: u16,
+        /// From one edge to the next.
+        every: Duration,
+    },
     /// An input terminal got another level.
     Terminal {
         /// Index from 0.
@@ -370,6 +416,22 @@ pub enum Change {
         /// Carries a signal?
         signal: bool,
     },
+}
+
+/// What can be wrong with a device, apart from its line, for as long as somebody says so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Trouble {
+    /// The cause of an alarm stands: the drive trips, and no reset helps.
+    Cause(AlarmCause),
+    /// The axis can't leave the count at which it is.
+    Blocked,
+    /// There is no feedback: position and speed stay as they were seen last, and the drive trips if it has an
+    /// alarm for that.
+    EncoderLost,
+    /// Position and speed stay as they were seen last, and the drive does not notice.
+    Frozen,
+    /// The input terminal of this index, from 0, keeps its level.
+    Stuck(u8),
 }
 
 /// Why an order does nothing.

@@ -21,6 +21,7 @@
 //! main · cli            flags, exit code
 //! testkit               virtual clock; of all this only `testkit::live` needs the shell
 //! shell                 the only place that waits          (feature `cli`)
+//! scenario              what happens to a line, and when
 //! bench  log            benches: YAML -> buses | events as text
 //! bus                   one line: framing + drives
 //! drive                 the only place that sees registers AND behaviours
@@ -45,6 +46,7 @@ pub mod model;
 pub mod motion;
 pub mod problem;
 pub mod rng;
+pub mod scenario;
 pub mod serial;
 #[cfg(feature = "cli")]
 pub mod shell;

@@ -12,6 +12,7 @@ mod ladder;
 mod line;
 mod problems;
 mod properties;
+mod scenario;
 #[cfg(feature = "cli")]
 mod schema;
 #[cfg(feature = "cli")]
@@ -20,4 +21,5 @@ mod source;
 mod state;
 mod tidy;
 mod transcripts;
+mod troubles;
 mod words;

@@ -9,6 +9,7 @@ use drivemu::bench::{self, BuiltinLibrary, DeviceSpec, Library, Saved, kind_of};
 use drivemu::model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
+use drivemu::scenario;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -42,6 +43,7 @@ fn told(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let problems = match file.parent().and_then(Path::file_name) {
         Some(kind) if kind == "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
+        Some(kind) if kind == "scenario" => of_scenario(&text).err().unwrap_or_default(),
         Some(kind) if kind == "state" => of_state(&text).err().unwrap_or_default(),
         _ => model::check(&text),
     };
@@ -54,6 +56,12 @@ fn of_state(text: &str) -> Result<(), Vec<Problem>> {
     let mut saved = Saved::read(text)?;
     bench::parse_saved(BENCH, &Files, &mut saved)?;
     saved.finish()
+}
+
+/// What is wrong with a scenario for one drive.
+fn of_scenario(text: &str) -> Result<(), Vec<Problem>> {
+    const BENCH: &str = "lines: [{name: cell-1, pty: auto, drives: [{model: yako-closed-loop}]}]";
+    scenario::parse(text, &bench::parse(BENCH, &BuiltinLibrary)?.lines).map(|_| ())
 }
 
 fn is_spec(file: &Path) -> bool {
@@ -77,6 +85,7 @@ fn the_kind_of_a_file_shows() {
         let text = read(file);
         let by_kind = match kind_of(&text) {
             "bench" => bench::parse(&text, &BadModels).err().unwrap_or_default(),
+            "scenario" => of_scenario(&text).err().unwrap_or_default(),
             _ => model::check(&text),
         };
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -100,9 +109,13 @@ fn each_expectation_has_its_bad_file() {
 }
 
 /// Where sentences for people who write files come from.
-const SPEAKERS: [&str; 8] = [
+const SPEAKERS: [&str; 12] = [
     "src/model/",
     "src/bench/",
+    "src/scenario/compile.rs",
+    "src/scenario/order.rs",
+    "src/scenario/raw.rs",
+    "src/scenario/site.rs",
     "src/fault/compile.rs",
     "src/fault/raw.rs",
     "src/fault/spec.rs",

@@ -1,6 +1,6 @@
 //! The JSON Schema of the file formats, held against what the program says about keys.
 
-use drivemu::{bench, model};
+use drivemu::{bench, model, scenario};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,9 +27,11 @@ fn keys(schema: &Value) -> BTreeMap<String, Vec<String>> {
 /// Advice on unknown keys comes out of `KEYS`, so it must hold every key and nothing else.
 #[test]
 fn the_lists_of_keys_are_complete() {
-    for (schema, listed) in
-        [(model::raw::schema(), model::raw::KEYS), (bench::raw::schema(), bench::raw::KEYS)]
-    {
+    for (schema, listed) in [
+        (model::raw::schema(), model::raw::KEYS),
+        (bench::raw::schema(), bench::raw::KEYS),
+        (scenario::raw::schema(), scenario::raw::KEYS),
+    ] {
         let known: BTreeSet<String> = keys(&schema).into_keys().collect();
         let listed: Vec<String> = listed.iter().map(|key| (*key).to_owned()).collect();
         assert_eq!(listed, known.into_iter().collect::<Vec<_>>());
@@ -39,7 +41,7 @@ fn the_lists_of_keys_are_complete() {
 /// Editors show what the schema says about a key: nothing may be silent.
 #[test]
 fn each_key_is_explained() {
-    for schema in [model::raw::schema(), bench::raw::schema()] {
+    for schema in [model::raw::schema(), bench::raw::schema(), scenario::raw::schema()] {
         let silent: Vec<_> = keys(&schema)
             .into_iter()
             .filter(|(_, about)| about.iter().any(String::is_empty))

@@ -4,5 +4,6 @@ mod command_line;
 mod masters;
 mod ports;
 mod program;
+mod scenario;
 mod state;
 mod virtual_time;

@@ -6,7 +6,7 @@ use drivemu::model::builtin::Builtin;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The floors, lowest first. A module may import from floors below its own, and from itself.
-const FLOORS: [&[&str]; 13] = [
+const FLOORS: [&[&str]; 14] = [
     &["time", "units", "wire", "problem", "rng"],
     &["words", "serial"],
     &["event"],
@@ -16,6 +16,7 @@ const FLOORS: [&[&str]; 13] = [
     &["drive"],
     &["bus"],
     &["bench", "log"],
+    &["scenario"],
     &["shell"],
     &["testkit"],
     &["lib"],

@@ -9,6 +9,7 @@
 //! homing or a coasting axis has no lag: it starts where the axis is. A move that takes its place commands as far ahead
 //! as the axis is to be behind, so that it goes on at its speed.
 
+mod block;
 mod due;
 mod home;
 mod limits;
@@ -72,11 +73,14 @@ pub struct Motor {
     phase: Phase,
     /// Where the motion goes in the end: the positive direction?
     forward: bool,
-    /// Slope of a stop, from the order that started the motion.
+    /// Slopes of a run and of a stop, from the order that started the motion.
+    accel: f64,
     decel: f64,
     /// How long it runs out without power.
     coast: Duration,
     machine: Machine,
+    /// Its hard stops, while others block the axis.
+    blocked: Option<Option<[i64; 2]>>,
     wants: Wants,
     /// An order ended the jog; its level must go before it acts again.
     jog_spent: bool,
@@ -102,9 +106,11 @@ impl Motor {
             gain,
             phase: Phase::Standing,
             forward: true,
+            accel: 0.0,
             decel: 0.0,
             coast,
             machine,
+            blocked: None,
             wants: Wants::default(),
             jog_spent: false,
             arrived: false,
@@ -321,7 +327,7 @@ impl Motor {
         let from = self.feedback(now);
         let trajectory =
             Trajectory::to_speed_with_start(now, from, speed, accel, decel, start_speed);
-        (self.decel, self.forward) = (decel, speed >= 0.0);
+        (self.accel, self.decel, self.forward) = (accel, decel, speed >= 0.0);
         self.begin(now, trajectory, phase);
     }
 

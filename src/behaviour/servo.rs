@@ -6,7 +6,7 @@
 
 use crate::event::Change;
 use crate::time::{Duration, Instant};
-use crate::words::AlarmCause;
+use crate::words::{AlarmCause, AlarmCauses};
 
 /// An alarm as a drive raises it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,8 +33,8 @@ pub struct Servo {
     alarm: Option<Trip>,
     /// The power stage stays on despite the alarm, until the axis stands.
     braking: bool,
-    /// A cause that is still there, so that no reset helps.
-    standing: Option<AlarmCause>,
+    /// Causes that are still there, so that no reset helps.
+    standing: AlarmCauses,
     was_enabled: bool,
 }
 
@@ -49,7 +49,7 @@ impl Servo {
             latched: enabled,
             alarm: None,
             braking: false,
-            standing: None,
+            standing: AlarmCauses::default(),
             was_enabled: false,
         }
     }
@@ -118,8 +118,8 @@ impl Servo {
         self.settle(tell);
     }
 
-    /// A cause that stands (or none): while it does, no reset clears its alarm.
-    pub fn stand(&mut self, standing: Option<AlarmCause>) {
+    /// The causes that stand: while one does, no reset clears its alarm.
+    pub fn stand(&mut self, standing: AlarmCauses) {
         self.standing = standing;
     }
 
@@ -135,7 +135,7 @@ impl Servo {
 
     fn clear(&mut self, clears: bool, tell: &mut impl FnMut(Change)) {
         let Some(Trip { cause, .. }) = self.alarm else { return };
-        if !clears || self.standing == Some(cause) {
+        if !clears || self.standing.has(cause) {
             return tell(Change::AlarmStays { cause });
         }
         (self.alarm, self.braking) = (None, false);
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn no_reset_while_the_cause_stands_or_where_none_helps() {
         let (servo, _) = after(|servo, mut tell| {
-            servo.stand(Some(AlarmCause::Forced));
+            servo.stand(AlarmCauses::default().with(AlarmCause::Forced, true));
             servo.trip(FORCED, false, &mut tell);
             servo.reset(&mut tell);
         });

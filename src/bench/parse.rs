@@ -23,6 +23,9 @@ pub fn kind_of(text: &str) -> &'static str {
     let of_bench = ["lines", "seed"].iter().any(|key| file.get(key).is_some());
     // Of a model this is a map; somebody forgot the s.
     let nearly = file.get("line").is_some_and(Value::is_sequence);
+    if file.get("steps").is_some() {
+        return "scenario";
+    }
     if of_bench || nearly { "bench" } else { "model" }
 }
 

@@ -45,7 +45,7 @@ impl Bus {
 
     fn take(&mut self, link: LinkId, now: Instant) -> Option<Taken> {
         let it = self.links.get_mut(&link)?;
-        let sole = it.sole && self.drives.len() == 1;
+        let sole = it.sole && self.drives.len() == 1 && self.drives[0].is_powered();
         Some(match it.line.next(now, &self.units)? {
             Heard::Request(adu) => request(adu),
             // 255 on TCP: the only drive there is.
@@ -80,6 +80,7 @@ impl Bus {
                 Ok(response) => (response.encode(), None),
                 Err(refusal) => (exception(refusal.code), Some(refusal)),
             };
+            self.count(id, function);
             // What an answer confirms must be there after a power failure.
             self.keep(id);
             self.send(link, id, adu, answer, strike.as_mut());

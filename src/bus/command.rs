@@ -1,8 +1,10 @@
 //! What can be done to drives from outside their line: by a test, a bench, later a control port.
 
 use super::Bus;
-use crate::event::DriveId;
+use crate::drive::Drive;
+use crate::event::{DriveId, Remark, RemarkId, Trouble, What};
 use crate::fault::{Habits, Rule};
+use crate::time::Duration;
 use crate::words::{AlarmCause, Word};
 use thiserror::Error;
 
@@ -25,6 +27,33 @@ pub enum Command {
         /// Why.
         cause: AlarmCause,
     },
+    /// Something is wrong with the device from now on, or no longer.
+    Trouble {
+        /// Which drive.
+        drive: DriveId,
+        /// What.
+        trouble: Trouble,
+        /// From now on?
+        on: bool,
+    },
+    /// Have the contact on an input terminal bounce.
+    Bounce {
+        /// Which drive.
+        drive: DriveId,
+        /// Which terminal, from 0.
+        index: u8,
+        /// So many times it leaves its level and comes back.
+        times: u16,
+        /// From one edge to the next; the first comes at once.
+        every: Duration,
+    },
+    /// Power on or off; all stations of the device with it. What is there already stays.
+    Power {
+        /// Which drive.
+        drive: DriveId,
+        /// On?
+        on: bool,
+    },
     /// Power off and on; all stations of the device with it.
     PowerCycle {
         /// Which drive.
@@ -36,6 +65,8 @@ pub enum Command {
     RemoveFault(String),
     /// Give the line these habits from now on, in place of those that it has.
     SetHabits(Habits),
+    /// Tell of a step of a scenario.
+    Tell(Remark),
 }
 
 /// The answer to a command that was carried out.
@@ -59,6 +90,9 @@ pub enum CommandError {
         /// There are this many.
         have: usize,
     },
+    /// Nothing can happen in a drive that has no power.
+    #[error("the drive has no power")]
+    NoPower,
     /// The model has no alarm for the cause.
     #[error("the model has no alarm for `{0}`")]
     NoAlarm(&'static str),
@@ -78,11 +112,25 @@ pub enum CommandError {
     },
 }
 
+/// Makes sure that there is such an input terminal.
+fn terminal(drive: &Drive, index: u8) -> Result<(), CommandError> {
+    let terminals = drive.model().wiring.input_terminals.as_ref();
+    let have = terminals.map_or(0, |terminals| terminals.functions.len());
+    if usize::from(index) < have {
+        Ok(())
+    } else {
+        Err(CommandError::NoTerminal { got: index, have })
+    }
+}
+
 impl Bus {
     pub(super) fn carry_out(&mut self, command: Command) -> Result<Reply, CommandError> {
         let id = match command {
             Command::Terminal { drive, .. }
             | Command::Raise { drive, .. }
+            | Command::Trouble { drive, .. }
+            | Command::Bounce { drive, .. }
+            | Command::Power { drive, .. }
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
             Command::RemoveFault(name) => return self.remove_fault(name),
@@ -90,31 +138,62 @@ impl Bus {
                 self.set_habits(habits);
                 return Ok(Reply::Done);
             }
+            Command::Tell(remark) => return Ok(self.remember(remark)),
         };
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
         match command {
             Command::Terminal { index, signal, .. } => {
-                let terminals = drive.model().wiring.input_terminals.as_ref();
-                let have = terminals.map_or(0, |terminals| terminals.functions.len());
-                if usize::from(index) >= have {
-                    return Err(CommandError::NoTerminal { got: index, have });
-                }
+                terminal(drive, index)?;
                 drive.set_terminal(now, index, signal);
             }
+            Command::Bounce { index, times, every, .. } => {
+                terminal(drive, index)?;
+                drive.bounce_terminal(now, index, times, every);
+            }
+            Command::Trouble { trouble, on, .. } => {
+                if let Trouble::Stuck(index) = trouble {
+                    terminal(drive, index)?;
+                }
+                if let (false, Trouble::Cause(cause)) =
+                    (drive.set_trouble(now, trouble, on), trouble)
+                {
+                    return Err(CommandError::NoAlarm(cause.name()));
+                }
+            }
             Command::Raise { cause, .. } => {
+                if !drive.is_powered() {
+                    return Err(CommandError::NoPower);
+                }
                 if !drive.raise(now, cause) {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }
-            Command::PowerCycle { .. } => {
-                let device = self.devices[usize::from(id.0)];
-                self.power_cycle(device);
+            Command::Power { on: true, .. } if drive.is_powered() => {}
+            Command::Power { on: true, .. } | Command::PowerCycle { .. } => {
+                self.power_cycle(self.devices[usize::from(id.0)]);
+            }
+            Command::Power { on: false, .. } => {
+                self.power_off(self.devices[usize::from(id.0)]);
             }
             // These are not for a drive and were carried out above.
-            Command::AddFault(_) | Command::RemoveFault(_) | Command::SetHabits(_) => {}
+            Command::AddFault(_)
+            | Command::RemoveFault(_)
+            | Command::SetHabits(_)
+            | Command::Tell(_) => {}
         }
         Ok(Reply::Done)
+    }
+
+    fn remember(&mut self, remark: Remark) -> Reply {
+        // A step that repeats says the same again and again.
+        let known = self.remarks.iter().position(|it| *it == remark);
+        let number = known.unwrap_or_else(|| {
+            self.remarks.push(remark);
+            self.remarks.len() - 1
+        });
+        self.emit(What::Step(RemarkId(number as u32)));
+        Reply::Done
     }
 
     fn add_fault(&mut self, rule: Rule) -> Result<Reply, CommandError> {

@@ -10,6 +10,7 @@
 mod agenda;
 mod answer;
 mod command;
+mod heard;
 mod held;
 mod others;
 mod outlet;
@@ -17,10 +18,11 @@ mod output;
 mod weather;
 
 pub use command::{Command, CommandError, Reply};
+pub use heard::Heard;
 pub use output::{LinkId, Output, Wake, WakeReason};
 
 use crate::drive::{Drive, Setup};
-use crate::event::{Change, DriveId, Event, What};
+use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
 use crate::fault::{Faults, Habits};
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
@@ -30,6 +32,7 @@ use crate::wire::{BROADCAST, Frame};
 use agenda::Agenda;
 use held::{Held, Ticket, Timed};
 use others::Others;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
@@ -45,6 +48,10 @@ pub struct Bus {
     drives: Vec<Drive>,
     /// Device that each drive belongs to: the stations of one device share their power.
     devices: Vec<u16>,
+    /// What each drive has heard.
+    heard: Vec<Heard>,
+    /// What was told of steps.
+    remarks: Vec<Remark>,
     /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
     mode: Option<Mode>,
     /// The same for what is on its way: the line moves when that has left.
@@ -81,6 +88,8 @@ impl Bus {
             next_link: 0,
             drives: Vec::new(),
             devices: Vec::new(),
+            heard: Vec::new(),
+            remarks: Vec::new(),
             mode: None,
             spoken: None,
             units: Units::new(),
@@ -101,6 +110,7 @@ impl Bus {
         let id = DriveId(self.drives.len() as u16);
         self.drives.push(Drive::new(model, setup, self.now));
         self.devices.push(device);
+        self.heard.push(Heard::default());
         self.readdress();
         self.after_drive(id);
         id
@@ -225,6 +235,16 @@ impl Bus {
         self.drives.iter_mut().for_each(|drive| drive.advance_to(now));
     }
 
+    /// As [`Drive::foresee`].
+    pub fn foresee(&mut self, id: DriveId, side: impl Fn(&Drive) -> Ordering) -> Option<Instant> {
+        self.drives[usize::from(id.0)].foresee(side)
+    }
+
+    /// What was told of a step.
+    pub fn remark(&self, id: RemarkId) -> &Remark {
+        &self.remarks[id.0 as usize]
+    }
+
     /// The next thing that leaves the bus.
     pub fn poll_output(&mut self) -> Option<Output> {
         self.outputs.pop_front()
@@ -272,8 +292,10 @@ impl Bus {
         }
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
-            moved |=
-                matches!(change, Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn);
+            moved |= matches!(
+                change,
+                Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn | Change::PoweredOff
+            );
             let unit = self.drives[usize::from(id.0)].unit();
             self.emit(What::Drive { drive: id, unit, change });
         }
@@ -289,6 +311,16 @@ impl Bus {
         for i in 0..self.drives.len() {
             if self.devices[i] == device {
                 self.drives[i].power_cycle(self.now);
+                self.after_drive(DriveId(i as u16));
+            }
+        }
+    }
+
+    /// Power off for all stations of `device`.
+    fn power_off(&mut self, device: u16) {
+        for i in 0..self.drives.len() {
+            if self.devices[i] == device {
+                self.drives[i].power_off(self.now);
                 self.after_drive(DriveId(i as u16));
             }
         }
@@ -318,7 +350,7 @@ impl Bus {
 
     /// Does the drive hear what is said on the line?
     fn hears(&self, drive: &Drive) -> bool {
-        self.mode.is_none() || drive.mode() == self.mode
+        drive.is_powered() && (self.mode.is_none() || drive.mode() == self.mode)
     }
 
     /// Finds out again who answers to what. Of two drives with one address the first answers.

@@ -19,7 +19,7 @@ pub enum Command {
     Models,
     /// Print a model's register map, or one row of it
     Show(ShowArgs),
-    /// Validate models and benches: every problem, with line and caret
+    /// Validate models, benches and scenarios: every problem, with line and caret
     Check(CheckArgs),
     /// Print the JSON Schema of a file format, for editors
     Schema(SchemaArgs),
@@ -70,6 +70,13 @@ pub struct RunArgs {
     /// lose_reply:every=10 (see docs/faults.md); repeatable
     #[arg(long, value_name = "SPEC")]
     pub fault: Vec<String>,
+    /// What happens to drives and lines during the run, and what should come of it (see
+    /// docs/scenarios.md); exit code 1 if something else does
+    #[arg(long, value_name = "FILE")]
+    pub scenario: Option<PathBuf>,
+    /// What became of the steps of the scenario, as JUnit XML, written atomically at the end
+    #[arg(long, value_name = "FILE", requires = "scenario")]
+    pub junit: Option<PathBuf>,
     /// Seed of the run, told on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
@@ -133,7 +140,7 @@ pub enum TableFormat {
 
 #[derive(Debug, ClapArgs)]
 pub struct CheckArgs {
-    /// Model and bench files
+    /// Model, bench and scenario files
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 }
@@ -148,4 +155,5 @@ pub struct SchemaArgs {
 pub enum SchemaFormat {
     Model,
     Bench,
+    Scenario,
 }

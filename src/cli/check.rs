@@ -7,6 +7,7 @@ use drivemu::bench::{kind_of, parse};
 use drivemu::model::check as check_model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
+use drivemu::scenario::check as check_scenario;
 use drivemu::shell::{FileLibrary, plain};
 use std::path::Path;
 
@@ -46,5 +47,6 @@ fn problems(file: &Path, text: &str) -> (&'static str, Vec<Problem>) {
         let base = file.parent().unwrap_or(Path::new(""));
         return (kind, parse(text, &FileLibrary::new(base)).err().unwrap_or_default());
     }
-    (kind, check_model(text))
+    let problems = if kind == "scenario" { check_scenario(text) } else { check_model(text) };
+    (kind, problems)
 }

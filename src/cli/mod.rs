@@ -1,6 +1,6 @@
 //! The command line: flags, what they mean, exit codes.
 //!
-//! 0: a clean end, also by SIGINT and SIGTERM. 1: the run failed. 2: usage, or an invalid file. 3: a port can't be
+//! 0: a clean end, also by SIGINT and SIGTERM. 1: the run failed, or a step of its scenario. 2: usage, or an invalid file. 3: a port can't be
 //! opened. Machine output goes to stdout, everything else to stderr.
 
 mod args;

@@ -11,9 +11,11 @@ use drivemu::fault::{Habits, Pacing};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::problem::render::render;
+use drivemu::scenario::{self, Verdict};
 use drivemu::serial::{Mode, Parity, Settings};
 use drivemu::shell::{
-    Diagnostics, FileLibrary, LogFormat, OpenError, RunOptions, diagnose, run as run_bench,
+    Diagnostics, FileLibrary, Judged, LogFormat, OpenError, Play, RunOptions, diagnose, plain,
+    run as run_bench,
 };
 use drivemu::units::parse_integer;
 use std::collections::BTreeMap;
@@ -35,6 +37,7 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
             added.map_err(|problems| Failure::invalid(render(&problems, "--fault", spec)))?;
         }
     }
+    let play = args.scenario.as_deref().map(|file| play(file, &args, &bench)).transpose()?;
     let seed = args.seed.or(bench.seed).unwrap_or_else(draw_seed);
     let options = RunOptions {
         seed,
@@ -46,16 +49,45 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
         log_file: args.log_file,
         ready_file: args.ready_file,
         store,
+        play,
         base,
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
-    runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
+    let judged = runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
         OpenError::Port(_) => Failure { code: NO_PORT, text: error.to_string() },
         OpenError::File(..) | OpenError::Signals(_) | OpenError::LineEnded(_) => {
             Failure { code: FAILED, text: error.to_string() }
         }
-    })
+    })?;
+    match failures(&judged).as_slice() {
+        [] => Ok(()),
+        failures => Err(Failure { code: FAILED, text: failures.join("\n") }),
+    }
+}
+
+/// The scenario in `file`, for the lines of `bench`.
+fn play(file: &Path, args: &RunArgs, bench: &Bench) -> Result<Play, Failure> {
+    let name = file.display().to_string();
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::invalid(format!("can't read {name}: {}", plain(&error))))?;
+    let scenario = scenario::parse(&text, &bench.lines)
+        .map_err(|problems| Failure::invalid(render(&problems, &name, &text)))?;
+    let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Play { name, scenario, junit: args.junit.clone() })
+}
+
+/// One line for each step that failed.
+fn failures(judged: &Judged) -> Vec<String> {
+    let mut told = Vec::new();
+    for (line, verdicts) in judged {
+        for Verdict { step, at, failure, .. } in verdicts {
+            let at =
+                failure.as_ref().map(|why| format!("{line}: step {step} failed at {at} s: {why}"));
+            told.extend(at);
+        }
+    }
+    told
 }
 
 /// A seed that survives JSON: no more bits than a double has.
@@ -68,6 +100,10 @@ fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf), Failure>
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     refuse_swallowed_model(args)?;
     let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
+    if kind_of(&text) == "scenario" {
+        let text = format!("{file} is a scenario; write `run MODEL --scenario {file}`");
+        return Err(Failure::invalid(text));
+    }
     if kind_of(&text) == "bench" {
         refuse_flags_of_a_line(args)?;
         let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();

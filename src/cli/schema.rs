@@ -7,6 +7,7 @@ use super::{FAILED, Failure};
 pub fn schema(args: &SchemaArgs) -> Result<(), Failure> {
     let schema = match args.format {
         SchemaFormat::Model => drivemu::model::raw::schema(),
+        SchemaFormat::Scenario => drivemu::scenario::raw::schema(),
         SchemaFormat::Bench => drivemu::bench::raw::schema(),
     };
     let text = serde_json::to_string_pretty(&schema);

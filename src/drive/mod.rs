@@ -6,6 +6,7 @@
 //! other drive.
 
 mod alarms;
+mod foresee;
 mod home;
 mod levels;
 mod memory;
@@ -16,12 +17,13 @@ mod settings;
 mod setup;
 mod show;
 mod signals;
+mod troubles;
 mod windows;
 
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo};
+use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Wants};
 use crate::event::{Change, Ignored};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -33,6 +35,7 @@ use levels::{Level, Velocity};
 use memory::Memory;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use troubles::Troubles;
 
 /// One station of a drive.
 #[derive(Debug)]
@@ -44,6 +47,9 @@ pub struct Drive {
     /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
     bank: Bank,
     memory: Memory,
+    /// Has it supply?
+    powered: bool,
+    troubles: Troubles,
     servo: Servo,
     /// Watchdogs of the input words.
     holds: Vec<Hold>,
@@ -113,6 +119,8 @@ impl Drive {
             now,
             bank,
             memory: Memory::default(),
+            powered: true,
+            troubles: Troubles::default(),
             terminals: setup.terminals,
             inputs: Inputs::default(),
             switches: setup.switches,
@@ -199,7 +207,27 @@ impl Drive {
     pub fn power_cycle(&mut self, now: Instant) {
         self.advance_to(now);
         self.bank.power_cycle();
+        self.powered = true;
         self.power_on(now);
+    }
+
+    /// Power off. What moved runs out, and nobody answers.
+    pub fn power_off(&mut self, now: Instant) {
+        self.advance_to(now);
+        if !std::mem::take(&mut self.powered) {
+            return;
+        }
+        self.changes.push_back(Change::PoweredOff);
+        self.end_servo();
+        self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
+        self.chain.end();
+        self.motor.follow(now, Wants::default());
+        self.tell_stages(None);
+    }
+
+    /// Has it supply?
+    pub fn is_powered(&self) -> bool {
+        self.powered
     }
 
     /// Has a master asked for a restart of the device since this was asked last?
@@ -211,7 +239,10 @@ impl Drive {
     pub fn advance_to(&mut self, now: Instant) {
         while let Some(at) = self.deadline().filter(|at| *at <= now) {
             self.now = self.now.max(at);
-            self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
+            if self.powered {
+                self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
+            }
+            self.bounce();
             // Switches first: what they are wired to has changed before anything else happens.
             if self.motor.take_edge(self.now) {
                 self.gather_inputs();
@@ -229,7 +260,8 @@ impl Drive {
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
         let holds = self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline);
-        let ends = [self.servo.deadline(), self.motor.deadline(), self.chain.deadline()];
+        let servo = self.servo.deadline().filter(|_| self.powered);
+        let ends = [servo, self.motor.deadline(), self.chain.deadline(), self.troubles.deadline()];
         holds.chain(ends.into_iter().flatten()).min()
     }
 
@@ -289,22 +321,18 @@ impl Drive {
     }
 
     fn power_on(&mut self, now: Instant) {
-        if self.servo.is_enabled() {
-            self.changes.push_back(Change::Enabled(false));
-        }
-        let servo = self.model.wiring.servo;
+        self.end_servo();
         self.memory.power_on();
+        let (servo, axis) = (self.model.wiring.servo, &self.model.wiring.axis);
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
-        let (position, axis) = (self.motor.feedback(now).position, &self.model.wiring.axis);
-        let machine = *self.motor.machine();
-        self.motor = Motor::standing(now, position, axis.coast, machine, axis.position_gain);
+        self.motor = self.motor.switched_on(now, axis.coast, axis.position_gain);
         (self.home_done, self.never_enabled) = (false, true);
         (self.run, self.velocity, self.segment) = (None, None, 0);
         self.chain.end();
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         // What is active from the start has not risen.
         self.inputs = self.active_inputs();
-        self.zero = self.motor.position(now).saturating_sub(self.position_at_power_on);
+        self.zero = self.seen_position().saturating_sub(self.position_at_power_on);
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
         let from = std::mem::replace(&mut self.mode, mode);
@@ -315,6 +343,14 @@ impl Drive {
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
         self.settle();
+    }
+
+    /// A power stage without supply, as good as one that is not ready yet.
+    fn end_servo(&mut self) {
+        if self.servo.is_enabled() {
+            self.changes.push_back(Change::Enabled(false));
+        }
+        self.servo = Servo::power_on(self.now, self.model.wiring.servo.ready_after, false);
     }
 
     /// The unit address that switches and parameters ask for.
@@ -356,7 +392,7 @@ impl Drive {
             Action::EncoderReset => self.servo.reset_of(AlarmCause::Encoder, tell),
             Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
-                self.zero = self.motor.position(self.now);
+                self.zero = self.seen_position();
                 self.changes.push_back(Change::PositionCleared);
             }
             Action::StoreAll => {

@@ -10,7 +10,7 @@ use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, Sof
 impl Drive {
     /// Where the axis stands, in the drive's coordinate.
     pub(super) fn position(&self) -> i64 {
-        self.motor.position(self.now).saturating_sub(self.zero)
+        self.seen_position().saturating_sub(self.zero)
     }
 
     /// Has positive counts go the way that a row says, once the axis stands. The position register goes on from what it says.
@@ -27,7 +27,7 @@ impl Drive {
 
     /// How fast the axis goes, in revolutions a minute.
     pub(super) fn rpm(&self) -> f64 {
-        rpm(self.motor.speed(self.now), self.counts_per_rev())
+        rpm(self.seen_speed(), self.counts_per_rev())
     }
 
     /// How fast a run or a jog was ordered to go, in revolutions a minute.
@@ -38,6 +38,10 @@ impl Drive {
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
     /// at the end of each motion.
     pub(super) fn settle(&mut self) {
+        if !self.powered {
+            return;
+        }
+        self.uphold_causes();
         if self.servo.is_braking() && !self.motor.is_moving() {
             self.servo.braked(&mut |change| self.changes.push_back(change));
         }

@@ -8,13 +8,15 @@ use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowI
 impl Drive {
     /// Looks at every source again and tells the behaviours what changed.
     pub(super) fn gather_inputs(&mut self) {
+        if !self.powered {
+            return;
+        }
         let now = self.active_inputs();
         let before = std::mem::replace(&mut self.inputs, now);
-        let forced = now.has(Input::AlarmForce).then_some(AlarmCause::Forced);
-        self.servo.stand(forced);
-        forced.into_iter().for_each(|cause| {
-            self.trip(cause);
-        });
+        if now.has(Input::AlarmForce) {
+            self.trip(AlarmCause::Forced);
+        }
+        self.uphold_causes();
         let tell = &mut |change| self.changes.push_back(change);
         if now.risen_since(before).has(Input::AlarmReset) {
             self.servo.reset(tell);
@@ -30,6 +32,9 @@ impl Drive {
 
     /// The output signals, right now.
     pub(super) fn outputs(&self) -> Outputs {
+        if !self.powered {
+            return Outputs::default();
+        }
         let enabled = self.servo.is_enabled();
         let beyond = |forward: bool| {
             self.soft_limits().is_some_and(|[low, high]| {
@@ -83,7 +88,17 @@ impl Drive {
     /// Input terminals that are active, bit by bit. One that has the function of a switch of the machine is wired
     /// to it, as a normally open or closed one.
     fn active_terminals(&self, terminals: &Terminals<Input>) -> u32 {
-        let mut active = u32::from(self.terminals) ^ self.normally_closed(terminals);
+        self.signals_on(terminals) ^ self.normally_closed(terminals)
+    }
+
+    /// The signals on input terminals, bit by bit.
+    pub(super) fn terminal_signals(&self) -> u32 {
+        self.model.wiring.input_terminals.as_ref().map_or(0, |it| self.signals_on(it))
+    }
+
+    fn signals_on(&self, terminals: &Terminals<Input>) -> u32 {
+        let closed = self.normally_closed(terminals);
+        let mut active = u32::from(self.terminals) ^ closed;
         for (i, row) in terminals.functions.iter().enumerate() {
             let signal = terminals.meaning(self.bank.raw(*row));
             let switch = signal.and_then(|signal| self.switch(signal));
@@ -92,7 +107,7 @@ impl Drive {
                 active = active & !(1 << i) | u32::from(on) << i;
             }
         }
-        active
+        self.troubles.signals(active ^ closed)
     }
 
     /// The switch of the machine that `signal` is wired to. Which end of the machine is its positive one does not

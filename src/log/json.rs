@@ -4,7 +4,7 @@ use super::rows::{self, Item};
 use super::{text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Transaction, What};
+use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
 use crate::model::Row;
 use crate::wire::hex::to_hex;
 use crate::words::{Refusal, Word};
@@ -67,6 +67,19 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             let mut fields = json!({"rule": name, "kind": kind.name(), "unit": unit, "hit": hit});
             merge(&mut fields, mishap_fields(*mishap));
             ("fault", fields)
+        }
+        What::Step(id) => {
+            let remark = bus.remark(*id);
+            let outcome = match remark.outcome {
+                Outcome::Begins => "begins",
+                Outcome::Passed => "passed",
+                Outcome::Failed => "failed",
+            };
+            let mut fields = json!({"step": remark.step, "outcome": outcome});
+            if !remark.what.is_empty() {
+                merge(&mut fields, json!({"why": remark.what}));
+            }
+            ("step", fields)
         }
         What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
     }
@@ -145,6 +158,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
     let mut fields = json!({"unit": unit});
     let (kind, more) = match change {
         Change::PoweredOn => ("power_on", json!({})),
+        Change::PoweredOff => ("power_off", json!({})),
         Change::Ready => ("ready", json!({})),
         Change::Enabled(on) => ("servo", json!({"on": on})),
         Change::Alarm { cause, code } => ("alarm", json!({"cause": cause.name(), "code": code})),
@@ -217,10 +231,25 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::InputIgnored { input, why } => {
             ("input_ignored", json!({"input": input.name(), "why": why::ignored(*why)}))
         }
+        Change::Trouble { trouble, on } => {
+            let more = match trouble {
+                Trouble::Cause(cause) => json!({"trouble": "cause", "cause": cause.name()}),
+                Trouble::Blocked => json!({"trouble": "blocked"}),
+                Trouble::EncoderLost => json!({"trouble": "encoder_lost"}),
+                Trouble::Frozen => json!({"trouble": "frozen"}),
+                Trouble::Stuck(index) => {
+                    json!({"trouble": "stuck", "terminal": rows::terminal(drive, *index)})
+                }
+            };
+            merge(&mut fields, json!({"on": on}));
+            ("trouble", more)
+        }
+        Change::Bounces { index, times, every } => {
+            let (terminal, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
+            ("bounces", json!({"terminal": terminal, "times": times, "every_ms": every}))
+        }
         Change::Terminal { index, signal } => {
-            let terminals = drive.model().wiring.input_terminals.as_ref();
-            let name = terminals.map(|it| it.name(usize::from(*index)));
-            ("terminal", json!({"terminal": name, "signal": signal}))
+            ("terminal", json!({"terminal": rows::terminal(drive, *index), "signal": signal}))
         }
     };
     merge(&mut fields, more);

@@ -44,6 +44,12 @@ pub fn request(drive: &Drive, pdu: &[u8]) -> Told {
     }
 }
 
+/// What the model calls an input terminal.
+pub fn terminal(drive: &Drive, index: u8) -> String {
+    let terminals = drive.model().wiring.input_terminals.as_ref();
+    terminals.map(|it| it.name(usize::from(index))).unwrap_or_default()
+}
+
 /// The rows that the answer to a read carries.
 pub fn answer(drive: &Drive, span: Span, pdu: &[u8]) -> Vec<Item> {
     let word = |i: usize| {

@@ -3,7 +3,7 @@
 use super::{rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Transaction, What};
+use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
 use crate::serial::Mode;
 use crate::wire::hex::to_hex;
 use crate::words::{Then, Word};
@@ -62,6 +62,14 @@ fn what(what: &What, bus: &Bus) -> String {
             let (name, _) = bus.faults().told(*rule);
             format!("fault {name}: {} (hit {hit})", mishap_text(*unit, *mishap))
         }
+        What::Step(id) => {
+            let remark = bus.remark(*id);
+            match remark.outcome {
+                Outcome::Begins => format!("step {}", remark.step),
+                Outcome::Passed => format!("step {} passed", remark.step),
+                Outcome::Failed => format!("step {} failed: {}", remark.step, remark.what),
+            }
+        }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
         }
@@ -115,6 +123,7 @@ fn list(drive: &Drive, items: &[rows::Item], tell: Tell) -> String {
 fn who_is_here(unit: u8, bus: &Bus) -> String {
     if let Some((_, deaf)) = bus.drives().find(|(_, drive)| drive.unit() == unit) {
         return match deaf.mode() {
+            _ if !deaf.is_powered() => "the drive has no power".into(),
             Some(mode) => format!("the drive listens at {mode}"),
             None => "the drive hears nobody".into(),
         };
@@ -157,6 +166,7 @@ fn mishap_text(unit: u8, mishap: Mishap) -> String {
 fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
     match change {
         Change::PoweredOn => "power on".into(),
+        Change::PoweredOff => "power off".into(),
         Change::Ready => "ready".into(),
         Change::Enabled(true) => "servo on".into(),
         Change::Enabled(false) => "servo off".into(),
@@ -248,12 +258,38 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::InputIgnored { input, why } => {
             format!("input {} ignored: {}", input.name(), why::ignored(*why))
         }
+        Change::Trouble { trouble, on } => trouble_text(drive, *trouble, *on),
+        Change::Bounces { index, times, every } => {
+            let (name, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
+            format!("terminal {name} bounces {times} times, {every} ms from edge to edge")
+        }
         Change::Terminal { index, signal } => {
-            let terminals = drive.model().wiring.input_terminals.as_ref();
-            let name = terminals.map(|it| it.name(usize::from(*index))).unwrap_or_default();
-            format!("terminal {name} {}", if *signal { "on" } else { "off" })
+            format!("terminal {} {}", rows::terminal(drive, *index), on_off(*signal))
         }
     }
+}
+
+fn trouble_text(drive: &Drive, trouble: Trouble, on: bool) -> String {
+    match (trouble, on) {
+        (Trouble::Cause(cause), true) => format!("suffers from now on: {}", cause.about()),
+        (Trouble::Cause(cause), false) => format!("suffers no longer: {}", cause.about()),
+        (Trouble::Blocked, true) => "is blocked where it stands".into(),
+        (Trouble::Blocked, false) => "is free again".into(),
+        (Trouble::EncoderLost, true) => "has lost its encoder".into(),
+        (Trouble::EncoderLost, false) => "has its encoder again".into(),
+        (Trouble::Frozen, true) => "sees its position frozen".into(),
+        (Trouble::Frozen, false) => "sees its position again".into(),
+        (Trouble::Stuck(index), true) => {
+            format!("terminal {} sticks", rows::terminal(drive, index))
+        }
+        (Trouble::Stuck(index), false) => {
+            format!("terminal {} sticks no longer", rows::terminal(drive, index))
+        }
+    }
+}
+
+fn on_off(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
 }
 
 fn side(forward: bool) -> &'static str {

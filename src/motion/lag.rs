@@ -8,6 +8,11 @@ use super::trajectory::Segment;
 use super::{State, Trajectory};
 use crate::time::{Duration, Instant};
 
+/// Stretches between two turns are looked at in so many parts: a position may turn round inside one.
+const PARTS: u32 = 16;
+
+const END_OF_TIME: Instant = Instant::from_nanos(u64::MAX);
+
 /// How far the feedback is behind the trajectory that it belongs to. Goes with each new trajectory by
 /// [`Lag::with_deviation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +43,11 @@ impl Lag {
     #[must_use]
     pub fn with_deviation(self, deviation: f64) -> Self {
         Self { deviation: if self.gain.is_some() { deviation } else { 0.0 }, ..self }
+    }
+
+    /// Is the axis behind at all? Then it makes up for what it is behind.
+    pub fn makes_up(&self) -> bool {
+        self.gain.is_some()
     }
 
     /// Command less feedback at `at`, in counts.
@@ -83,6 +93,39 @@ impl Lag {
         let ns = (0..4).take_while(late).count() as u64;
         Some(at + Duration::from_nanos(ns))
     }
+
+    /// Instants after `after` between which neither speed nor deviation turns round, up to the end of time, and
+    /// some between them.
+    pub fn marks(&self, of: &Trajectory, after: Instant) -> Vec<Instant> {
+        let seams = of.spans().map(|(_, until)| of.instant(until));
+        let turns = self.turns(of).map(|(at, ())| at);
+        let mut turns: Vec<_> = seams.chain(turns).filter(|at| *at > after).collect();
+        turns.sort_unstable();
+        turns.dedup();
+        let mut marks = Vec::with_capacity((turns.len() + 1) * PARTS as usize);
+        let mut from = after;
+        for to in turns {
+            let part = to.since(from) / PARTS;
+            marks.extend((1..PARTS).map(|i| from + part * i));
+            marks.push(to);
+            from = to;
+        }
+        // What is left decays, or goes on for ever.
+        marks.extend((from < END_OF_TIME).then_some(END_OF_TIME));
+        marks
+    }
+
+    /// Instants between which the deviation is monotone.
+    fn turns(&self, of: &Trajectory) -> impl Iterator<Item = (Instant, ())> {
+        let mut deviation = self.deviation;
+        let spans = self.gain.into_iter().flat_map(|gain| of.spans().map(move |it| (gain, it)));
+        spans.flat_map(move |(gain, (segment, until))| {
+            // What would turn after the segment is over does not.
+            let turn = (segment.from + turn(gain, deviation, segment)).min(until);
+            deviation = behind(gain, deviation, segment, until - segment.from);
+            [turn, until].map(|t| (of.instant(t), ()))
+        })
+    }
 }
 
 /// The deviation `x` seconds into `segment`, which it enters with `deviation`.
@@ -97,6 +140,15 @@ fn behind(gain: f64, deviation: f64, segment: &Segment, x: f64) -> f64 {
     let share = -(-gain * x).exp_m1();
     let lagged = share / gain;
     deviation * (1.0 - share) + segment.start.speed * lagged + segment.accel * (x - lagged) / gain
+}
+
+/// Seconds into `segment` at which the deviation turns round; zero if it does not.
+fn turn(gain: f64, deviation: f64, segment: &Segment) -> f64 {
+    // d = steady + growth * x + rest * exp(-K x); its slope is zero where exp(-K x) = growth / (K rest).
+    let growth = segment.accel / gain;
+    let rest = deviation - segment.start.speed / gain + growth / gain;
+    let ratio = gain * rest / growth;
+    if ratio > 1.0 { ratio.ln() / gain } else { 0.0 }
 }
 
 #[cfg(test)]

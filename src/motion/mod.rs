@@ -28,6 +28,7 @@ mod trajectory;
 pub use lag::Lag;
 pub use machine::{Edge, Hit, Index, IndexPulse, Machine, Switch, Zone};
 pub use orders::Move;
+pub use search::first_equal;
 pub use trajectory::Trajectory;
 
 /// Where an axis is and how fast it goes.

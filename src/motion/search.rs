@@ -5,6 +5,30 @@
 //! holds while it does not yet hold one nanosecond before.
 
 use crate::time::Instant;
+use std::cmp::Ordering;
+
+/// The first instant after `after` at which something comes to be equal, be it for a nanosecond. Between two
+/// neighbouring `marks`, which ascend, it goes one way only.
+pub fn first_equal(
+    after: Instant,
+    marks: &[Instant],
+    side: impl Fn(Instant) -> Ordering,
+) -> Option<Instant> {
+    let (mut from, mut was) = (after, side(after));
+    for &mark in marks {
+        let is = side(mark);
+        if is != was && was != Ordering::Equal {
+            let gone = |ns| side(Instant::from_nanos(ns)) != was;
+            let ns = change(from.as_nanos(), mark.as_nanos(), from.as_nanos(), gone);
+            let at = Instant::from_nanos(ns);
+            if side(at) == Ordering::Equal {
+                return Some(at);
+            }
+        }
+        (from, was) = (mark, is);
+    }
+    None
+}
 
 /// The first instant after `after` at which `holds` begins to hold.
 ///

@@ -151,3 +151,33 @@ proptest! {
         prop_assert!(a.since(b).max(b.since(a)) < Duration::from_millis(1), "{} {}", a.as_nanos(), b.as_nanos());
     }
 }
+
+proptest! {
+    #[test]
+    fn what_is_left_goes_on(of in trajectories(), part in 0.0..1.0, by in -5000.0..5000.0) {
+        let all = instants(&of, 100);
+        let now = all[(part * 99.0) as usize];
+        let left = of.left(now, by);
+        for at in all.into_iter().filter(|at| *at >= now) {
+            let (was, is) = (of.state(at), left.state(at));
+            prop_assert!((is.position - was.position - by).abs() < 1e-3, "{:?} {:?}", was, is);
+            prop_assert!((is.speed - was.speed).abs() < 1e-2, "{:?} {:?}", was, is);
+        }
+        prop_assert_eq!(left.end(), of.end().map(|end| end.max(now)));
+    }
+}
+
+proptest! {
+    /// Whoever waits for a count is told of the first nanosecond that shows it.
+    #[test]
+    fn counts_are_met(of in trajectories(), count in -20_000i64..20_000) {
+        let side = |at| of.position(at).cmp(&count);
+        let found = first_equal(of.begin, &Lag::NONE.marks(&of, of.begin), side);
+        if let Some(at) = found {
+            prop_assert!(side(at).is_eq() && side(at - Duration::from_nanos(1)).is_ne());
+        }
+        let looks = instants(&of, 1000).into_iter().skip_while(|at| side(*at).is_eq());
+        let mut before = looks.take_while(|at| found.is_none_or(|found| *at < found));
+        prop_assert!(before.all(|at| side(at).is_ne()), "{:?}", found);
+    }
+}

@@ -106,6 +106,27 @@ impl Trajectory {
         Some(self.instant(segment.from).max(after))
     }
 
+    /// What is left of it at `now`, `by` counts further on.
+    #[must_use]
+    pub fn left(&self, now: Instant, by: f64) -> Self {
+        if self.end.is_some_and(|end| end <= now) {
+            return Self::rest(now, self.rest + by);
+        }
+        let t = self.seconds(now);
+        let mut left = Self { begin: now, len: 0, rest: self.rest + by, ..*self };
+        for (segment, _) in self.spans().filter(|(_, until)| *until > t) {
+            let started = segment.from <= t;
+            let State { position, speed } = if started { segment.state(t) } else { segment.start };
+            left.segments[left.len] = Segment {
+                from: (segment.from - t).max(0.0),
+                start: State { position: position + by, speed },
+                accel: segment.accel,
+            };
+            left.len += 1;
+        }
+        left
+    }
+
     pub(super) fn segments(&self) -> &[Segment] {
         &self.segments[..self.len]
     }

@@ -11,6 +11,7 @@ pub mod port;
 mod ready;
 mod run;
 mod serve;
+mod stage;
 mod stop;
 mod store;
 
@@ -18,6 +19,7 @@ pub use clock::Clock;
 pub use diagnostics::{Diagnostics, diagnose};
 pub use library::{FileLibrary, plain};
 pub use logger::{LogFormat, Logger};
-pub use run::{OpenError, RunOptions, run};
+pub use run::{Judged, OpenError, Play, RunOptions, run};
 pub use serve::{Frames, Reopen, Served, serve_stream, serve_tty};
+pub use stage::Stage;
 pub use store::Store;

@@ -6,10 +6,12 @@ use super::logger::{LogFormat, Logger};
 use super::port::{Listener, Pty, Serial, Tty};
 use super::ready::{self, Endpoint, Ready, Unit};
 use super::serve::{Frames, Reopen, Served, held, serve_tcp, serve_tty};
+use super::stage::Stage;
 use super::stop::Stop;
 use super::store::Store;
 use crate::bench::{Bench, BenchLine, PortSpec};
 use crate::bus::Bus;
+use crate::scenario::{Scenario, Verdict, junit};
 use crate::serial::{Parity, Settings};
 use std::future::Future;
 use std::io;
@@ -17,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::{Arc, Mutex};
 use thiserror::Error;
+use tokio::sync::Notify;
 use tracing::info;
 
 /// How to run a bench.
@@ -34,9 +37,25 @@ pub struct RunOptions {
     pub ready_file: Option<PathBuf>,
     /// Where drives keep what they store.
     pub store: Option<Store>,
+    /// What happens to the lines, and what should come of it.
+    pub play: Option<Play>,
     /// Paths of links are relative to this.
     pub base: PathBuf,
 }
+
+/// A scenario to play.
+#[derive(Debug)]
+pub struct Play {
+    /// What it is called in the report.
+    pub name: String,
+    /// Its steps.
+    pub scenario: Scenario,
+    /// The report is written here when the run is over.
+    pub junit: Option<PathBuf>,
+}
+
+/// What became of the steps of each line.
+pub type Judged = Vec<(String, Vec<Verdict>)>;
 
 /// Why a run did not begin.
 #[derive(Debug, Error)]
@@ -80,11 +99,12 @@ fn saved(
 
 type Task = Pin<Box<dyn Future<Output = ()>>>;
 
-/// Runs `bench` until a signal ends it.
+/// Runs `bench` until a signal ends it, or the last step of a scenario that is a test. Gives back what became of the
+/// steps.
 ///
 /// # Errors
 /// If a port or a file can't be opened; then nothing was served.
-pub async fn run(bench: Bench, mut options: RunOptions) -> Result<(), OpenError> {
+pub async fn run(bench: Bench, mut options: RunOptions) -> Result<Judged, OpenError> {
     // Before anybody can learn that the run has begun.
     let mut stop = Stop::listen().map_err(OpenError::Signals)?;
     if let Some(path) = &options.ready_file {
@@ -97,9 +117,15 @@ pub async fn run(bench: Bench, mut options: RunOptions) -> Result<(), OpenError>
     let log = Arc::new(Mutex::new(logger));
     let store = options.store.take().map(|store| Arc::new(Mutex::new(store)));
     let clock = Clock::start(options.rate);
+    let over = Arc::new(Notify::new());
+    let play = options.play.take();
+    let is_test = play.as_ref().is_some_and(|play| play.scenario.is_test());
+    let directors = play.iter().flat_map(|play| play.scenario.clone().directors());
+    let stages: Vec<_> = directors.map(|it| Stage::new(it, over.clone())).collect();
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
-    for line in &bench.lines {
-        let (task, endpoint) = open(line, clock, &log, store.as_ref(), &options)?;
+    for (i, line) in bench.lines.iter().enumerate() {
+        let shared = (&log, store.as_ref(), stages.get(i).cloned());
+        let (task, endpoint) = open(line, clock, shared, &options)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
@@ -120,6 +146,7 @@ pub async fn run(bench: Bench, mut options: RunOptions) -> Result<(), OpenError>
         tokio::select! {
             why = stop.requested() => Ok(why),
             Some(ended) = served.join_next() => Err(ended),
+            () = all_over(&stages, &over), if is_test => Ok("the scenario is over"),
         }
     });
     let why = why.await;
@@ -127,20 +154,36 @@ pub async fn run(bench: Bench, mut options: RunOptions) -> Result<(), OpenError>
     served.abort_all();
     local.await;
     saved(store.as_ref(), Store::finish)?;
+    let now = clock.now();
+    let verdicts = stages.iter().map(|stage| stage.verdicts(now));
+    let names = bench.lines.iter().map(|line| line.name.clone());
+    let judged = names.zip(verdicts).collect::<Judged>();
+    if let Some((play, path)) = play.as_ref().and_then(|it| Some((it, it.junit.as_ref()?))) {
+        written(path, ready::write_whole(path, &junit(&play.name, &judged)))?;
+    }
     match why {
-        Ok(signal) => {
-            info!("{signal}: ended");
-            Ok(())
+        Ok(why) => {
+            info!("{why}: ended");
+            Ok(if is_test { judged } else { Vec::new() })
         }
         Err(ended) => Err(OpenError::LineEnded(ended.err().map(|error| error.to_string()))),
     }
 }
 
+/// Waits for the last step of all lines.
+async fn all_over(stages: &[Stage], over: &Notify) {
+    while !stages.iter().all(Stage::is_over) {
+        over.notified().await;
+    }
+}
+
+/// What lines share, and the steps of one.
+type Shared<'a> = (&'a Arc<Mutex<Logger>>, Option<&'a Arc<Mutex<Store>>>, Option<Stage>);
+
 fn open(
     line: &BenchLine,
     clock: Clock,
-    log: &Arc<Mutex<Logger>>,
-    store: Option<&Arc<Mutex<Store>>>,
+    (log, store, stage): Shared<'_>,
     options: &RunOptions,
 ) -> Result<(Task, Endpoint), OpenError> {
     let (bus, name) = (line.bus(options.seed), line.name.clone());
@@ -150,7 +193,7 @@ fn open(
         held(store).take(&name, &bus);
     }
     let (log, store) = (Some(log.clone()), store.cloned());
-    let served = |frames| Served { name, bus, clock, frames, log, store };
+    let served = |frames| Served { name, bus, clock, frames, log, store, stage };
     let refused = |error: io::Error| OpenError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {

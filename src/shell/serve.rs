@@ -10,6 +10,7 @@ pub use tty::{Reopen, serve_tty};
 
 use super::clock::Clock;
 use super::logger::Logger;
+use super::stage::Stage;
 use super::store::Store;
 use crate::bench::WireSpec;
 use crate::bus::{Bus, LinkId, Output};
@@ -34,6 +35,8 @@ pub struct Served {
     pub log: Option<Arc<Mutex<Logger>>>,
     /// Where drives keep what they store, shared by all lines; else that ends with them.
     pub store: Option<Arc<Mutex<Store>>>,
+    /// The steps that a scenario has for it.
+    pub stage: Option<Stage>,
 }
 
 /// How frames are told apart on a port.
@@ -104,7 +107,31 @@ impl Served {
 
     /// Sleeps until the bus wants to be woken.
     async fn woken(&self) {
-        self.clock.until(self.bus.poll_at().map(|wake| wake.at)).await;
+        let bus = self.bus.poll_at().map(|wake| wake.at);
+        let stage = self.stage.as_ref().and_then(Stage::poll_at);
+        self.clock.until([bus, stage].into_iter().flatten().min()).await;
+    }
+
+    /// Lets time pass up to now.
+    fn advance(&mut self) {
+        self.advance_to(self.clock.now());
+    }
+
+    fn advance_to(&mut self, now: Instant) {
+        match &self.stage {
+            Some(stage) => stage.advance_to(&mut self.bus, now),
+            None => self.bus.advance_to(now),
+        }
+    }
+
+    /// Takes bytes that were just read from `link`.
+    fn receive(&mut self, link: LinkId, bytes: &[u8]) {
+        let at = self.arrival(link);
+        self.advance_to(at);
+        self.bus.receive(at, link, bytes);
+        if let Some(stage) = &self.stage {
+            stage.look(&mut self.bus);
+        }
     }
 
     /// The time at which input arrived on `link` that was just read.

@@ -40,7 +40,8 @@ pub fn stream(rig: Rig) -> (DuplexStream, impl Future<Output = io::Result<()>>) 
     let (bus, frames) = (rig.fresh_bus(), Frames::Serial(rig.wire()));
     let serve = async move {
         let clock = Clock::start(1.0);
-        let line = Served { name: "line".into(), bus, clock, frames, log: None, store: None };
+        let line =
+            Served { name: "line".into(), bus, clock, frames, log: None, store: None, stage: None };
         serve_stream(line, drive).await
     };
     (master, serve)

@@ -11,6 +11,7 @@ use crate::fault::Habits;
 use crate::line::Framing;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
+use crate::scenario::{self, Director, Verdict};
 use crate::time::{Duration, Instant};
 use crate::wire::{crc16, rtu};
 use std::sync::Arc;
@@ -22,6 +23,7 @@ pub struct Rig {
     framing: Framing,
     seed: u64,
     bus: Bus,
+    director: Option<Director>,
     link: LinkId,
     now: Instant,
     events: Vec<Event>,
@@ -125,11 +127,40 @@ impl Rig {
         Self::framed(self.line, self.framing, self.seed)
     }
 
+    /// The same line switched on anew, with the steps that the scenario in `text` has for it. Whatever else is to be
+    /// changed about the line comes before that.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scenario, or with this line for it.
+    pub fn with_scenario(self, text: &str) -> Result<Self, Vec<Problem>> {
+        let scenario = scenario::parse(text, std::slice::from_ref(&self.line))?;
+        let director = scenario.directors().next();
+        Ok(Self::directed(self.line, self.framing, self.seed, director))
+    }
+
+    /// What became of the steps of its scenario so far.
+    pub fn verdicts(&self) -> &[Verdict] {
+        self.director.as_ref().map_or(&[], Director::verdicts)
+    }
+
+    /// Ends the scenario: what has not come has failed.
+    pub fn finish(&mut self) -> &[Verdict] {
+        if let Some(director) = &mut self.director {
+            director.finish(self.now);
+        }
+        self.drain();
+        self.verdicts()
+    }
+
     fn framed(line: BenchLine, framing: Framing, seed: u64) -> Self {
+        Self::directed(line, framing, seed, None)
+    }
+
+    fn directed(line: BenchLine, framing: Framing, seed: u64, director: Option<Director>) -> Self {
         let mut bus = line.bus(seed);
         let link = bus.open(framing);
         let (now, events, log) = (Instant::ZERO, Vec::new(), Vec::new());
-        let mut rig = Self { line, framing, seed, bus, link, now, events, log };
+        let mut rig = Self { line, framing, seed, bus, director, link, now, events, log };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
         let ready = ready.max().unwrap_or_default();
         rig.advance(ready);
@@ -154,7 +185,7 @@ impl Rig {
     /// Lets time pass, and gives back what came meanwhile.
     pub fn advance(&mut self, by: Duration) -> Vec<u8> {
         self.now += by;
-        self.bus.advance_to(self.now);
+        self.pass();
         self.drain()
     }
 
@@ -180,7 +211,7 @@ impl Rig {
         let mut answer = self.drain();
         while let Some(at) = self.bus.silence_at(self.link) {
             self.now = self.now.max(at);
-            self.bus.advance_to(self.now);
+            self.pass();
             answer.extend(self.drain());
         }
         answer
@@ -248,7 +279,18 @@ impl Rig {
         self.log[first..].iter().map(|line| format!("{line}\n")).collect()
     }
 
+    /// Lets what is due happen.
+    fn pass(&mut self) {
+        match &mut self.director {
+            Some(director) => director.advance_to(&mut self.bus, self.now),
+            None => self.bus.advance_to(self.now),
+        }
+    }
+
     fn drain(&mut self) -> Vec<u8> {
+        if let Some(director) = &mut self.director {
+            director.look(&mut self.bus);
+        }
         self.bus.catch_up();
         let mut sent = Vec::new();
         while let Some(output) = self.bus.poll_output() {

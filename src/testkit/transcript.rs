@@ -18,7 +18,7 @@
 //! << -                                 # silence
 //! + 200ms                              # time passes; what comes meanwhile is for a `<` or `<<` line
 //! ? alarm off  C003 30                 # signals, quantities and registers of the drive
-//! ! power_cycle                        # also `terminal I1 on`, `raise overload`, `fault SPEC`, `no_fault NAME`
+//! ! power_cycle                        # also `terminal I1 on` and every other line that a scenario can `do`
 //! log refused, range 0..50             # the log says so, later than what the last such line found
 //! ```
 //!

@@ -18,3 +18,21 @@ words! {
         Forced "forced" "input `alarm_force` is active",
     }
 }
+
+/// A set of causes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct AlarmCauses(u16);
+
+impl AlarmCauses {
+    /// Is `cause` one of them?
+    pub fn has(self, cause: AlarmCause) -> bool {
+        self.0 & (1 << cause as u8) != 0
+    }
+
+    /// With `cause` if `stands`, else without it.
+    #[must_use]
+    pub fn with(self, cause: AlarmCause, stands: bool) -> Self {
+        let bit = 1 << cause as u8;
+        Self(if stands { self.0 | bit } else { self.0 & !bit })
+    }
+}

@@ -15,7 +15,7 @@ mod signal;
 mod threshold;
 
 pub use action::{Action, Modifier, Modifiers};
-pub use alarm::AlarmCause;
+pub use alarm::{AlarmCause, AlarmCauses};
 pub use cause::Cause;
 pub use homing::{
     Edge, HomeEnd, HomeStarter, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS, Method,

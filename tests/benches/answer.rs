@@ -128,7 +128,15 @@ mod pseudo_terminal {
             bus.add(device.model.clone(), &device.setups[0], 0);
             let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
             let (clock, frames) = (Clock::start(1.0), Frames::Serial(wire));
-            let line = Served { name: "line".into(), bus, clock, frames, log: None, store: None };
+            let line = Served {
+                name: "line".into(),
+                bus,
+                clock,
+                frames,
+                log: None,
+                store: None,
+                stage: None,
+            };
             serve_tty(line, Tty::Pty(pty), Box::new(|_| Ok(Tty::Pty(Pty::open(None)?)))).await;
         })
     }

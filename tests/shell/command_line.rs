@@ -38,7 +38,7 @@ const REFUSED: &[(&[&str], i32, &str)] = &[
     (&["show", "hcfa-x", "P09.1"], 2, "did you mean `P09.01`?"),
     (&["check", "nowhere.yaml"], 2, "no such file or directory"),
     (&["check", "broken.yaml", "bench.yaml"], 2, "1 of 2 file(s) invalid"),
-    (&["schema", "scenario"], 2, "possible values: model, bench"),
+    (&["schema", "nonsense"], 2, "possible values: model, bench, scenario"),
     (&["nonsense"], 2, "unrecognized subcommand"),
 ];
 

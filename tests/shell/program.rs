@@ -58,10 +58,15 @@ impl Program {
     }
 
     /// Ends the run with `signal` and gives back how it ended and what it printed.
-    pub fn stop(mut self, signal: &str) -> (Option<i32>, String, String) {
+    pub fn stop(self, signal: &str) -> (Option<i32>, String, String) {
         let pid = self.child.id().to_string();
         let killed = Command::new("kill").args([&format!("-{signal}"), &pid]).status();
         assert!(killed.expect("kill runs").success());
+        self.ended()
+    }
+
+    /// Waits until the run ends by itself, and gives back how it ended and what it printed.
+    pub fn ended(mut self) -> (Option<i32>, String, String) {
         wait_for("the end", || self.child.try_wait().expect("asked").is_some());
         let code = self.child.wait().expect("ended").code();
         let (stdout, stderr) = printed(&mut self.child);

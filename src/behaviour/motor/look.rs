@@ -12,6 +12,11 @@ impl Motor {
         position.clamp(low, high)
     }
 
+    /// Instants after `now` between which what it shows changes in one direction only, if nothing happens to it.
+    pub fn marks(&self, now: Instant) -> Vec<Instant> {
+        self.lag.marks(&self.trajectory, now)
+    }
+
     /// Counts per second.
     pub fn speed(&self, now: Instant) -> f64 {
         self.whereabouts(now).speed

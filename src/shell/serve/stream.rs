@@ -30,9 +30,9 @@ pub async fn serve_stream(
             biased;
             read = stream.read(&mut buffer) => match read? {
                 0 => return Ok(()),
-                len => line.bus.receive(line.arrival(link), link, &buffer[..len]),
+                len => line.receive(link, &buffer[..len]),
             },
-            () = line.woken() => line.bus.advance_to(line.clock.now()),
+            () = line.woken() => line.advance(),
         }
     }
 }

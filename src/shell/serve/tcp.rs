@@ -42,7 +42,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             }
         };
         match event {
-            None => line.bus.advance_to(line.clock.now()),
+            None => line.advance(),
             Some(TcpEvent::Opened(id, from)) => {
                 info!("{}: {from} connected", line.name);
                 clients.insert(id, line.bus.open(line.framing()));
@@ -50,8 +50,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
             Some(TcpEvent::Bytes(id, bytes)) => {
                 let link = clients.by_client.get(&id).copied();
                 if let Some(link) = link {
-                    let at = line.arrival(link);
-                    line.bus.receive(at, link, &bytes);
+                    line.receive(link, &bytes);
                 }
             }
             Some(TcpEvent::Closed(id, error)) => {

@@ -44,11 +44,10 @@ async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -
             () = line.woken() => tty.try_read(&mut buffer),
         };
         match read {
-            Ok(0) => line.bus.advance_to(line.clock.now()),
+            Ok(0) => line.advance(),
             Ok(len) => {
                 watch.look(line, tty);
-                let at = line.arrival(link);
-                line.bus.receive(at, link, &buffer[..len]);
+                line.receive(link, &buffer[..len]);
             }
             Err(error) => break error,
         }
@@ -62,7 +61,7 @@ async fn wait_for(line: &mut Served, reopen: &Reopen) -> Tty {
     let mut told = ErrorKind::NotFound;
     loop {
         Clock::wall(LOOK_AGAIN).await;
-        line.bus.advance_to(line.clock.now());
+        line.advance();
         while line.next_send().is_some() {}
         match reopen(line.settings()) {
             Ok(tty) => return tty,

@@ -9,10 +9,11 @@ use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
 use crate::fault::Habits;
+use crate::scenario::Order;
 use crate::testkit::{Rig, to_hex};
 use crate::units::parse_integer;
 use crate::wire::{ascii, rtu};
-use crate::words::{AlarmCause, Output, Quantity, Word};
+use crate::words::{Output, Quantity, Word};
 
 /// Plays the transcript in `text`.
 ///
@@ -137,28 +138,16 @@ impl Player {
     }
 
     fn act(&mut self, words: &[String]) -> Result<(), String> {
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let drive = DriveId(0);
-        let command = match words.as_slice() {
-            ["power_cycle"] => Command::PowerCycle { drive },
-            ["raise", cause] => {
-                let cause = AlarmCause::parse(cause).ok_or(format!("no alarm cause `{cause}`"))?;
-                Command::Raise { drive, cause }
-            }
-            ["terminal", name, level @ ("on" | "off")] => {
-                let terminals = self.rig.drive().model().wiring.input_terminals.as_ref();
-                let index =
-                    terminals.and_then(|it| (0..it.functions.len()).find(|i| it.name(*i) == *name));
-                let index = index.ok_or(format!("no terminal `{name}`"))? as u8;
-                Command::Terminal { drive, index, signal: *level == "on" }
-            }
-            ["fault", spec] => return self.rig.add_fault(spec),
-            ["no_fault", name] => Command::RemoveFault((*name).into()),
-            _ => {
-                let known =
-                    "power_cycle, raise CAUSE, terminal NAME on|off, fault SPEC, no_fault NAME";
-                return Err(format!("write {known}"));
-            }
+        let order = Order::parse(&words.join(" ")).map_err(|no| match no.advice {
+            Some(advice) => format!("{} ({advice})", no.what),
+            None => no.what,
+        })?;
+        let command = order.command(DriveId(0), self.rig.drive().model());
+        let command = match (command.map_err(|no| no.what)?, order) {
+            (Some(command), _) => command,
+            (None, Order::Fault(spec)) => return self.rig.add_fault(&spec),
+            (None, Order::NoFault(name)) => Command::RemoveFault(name),
+            (None, _) => return Ok(()),
         };
         self.rig.command(command).map_err(|error| error.to_string())
     }

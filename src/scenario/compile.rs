@@ -1,0 +1,359 @@
+//! From the text of a scenario to a [`Scenario`], or to everything that is wrong with it.
+//!
+//! Without a bench only what needs no drives is looked at. A key that could change nothing is a mistake.
+
+use super::order::{NoOrder, Order};
+use super::raw::{KEYS, RawCondition, RawCount, RawLevel, RawRegister, RawRepeat, RawStep};
+use super::site::Site;
+use super::step::{Condition, Step, Subject, Test, Trigger};
+use super::{Part, Scenario};
+use crate::bench::BenchLine;
+use crate::bus::Command;
+use crate::event::DriveId;
+use crate::problem::{Path, Problem, section, suggest};
+use crate::time::{Duration, Instant, parse_duration};
+use crate::words::{Output, Quantity, Word};
+use serde::Deserialize;
+use serde_yaml::Value;
+
+/// Reads a scenario for the lines of a bench.
+///
+/// # Errors
+/// Every problem of the text.
+pub fn parse(text: &str, lines: &[BenchLine]) -> Result<Scenario, Vec<Problem>> {
+    read(text, Some(lines))
+}
+
+/// Everything that is wrong with a scenario whatever bench it is for.
+pub fn check(text: &str) -> Vec<Problem> {
+    read(text, None).err().unwrap_or_default()
+}
+
+fn read(text: &str, lines: Option<&[BenchLine]>) -> Result<Scenario, Vec<Problem>> {
+    let (file, problems) = section::tree(text)?;
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let sites = lines.map(|lines| lines.iter().map(Site::new).collect());
+    let mut reader = Reader { sites, problems };
+    let scenario = reader.scenario(&file);
+    match reader.problems.is_empty() {
+        true => Ok(scenario),
+        false => Err(reader.problems),
+    }
+}
+
+/// Everything of the file but its steps, which are read one by one.
+#[derive(Deserialize)]
+struct Head {
+    limit: Option<String>,
+}
+
+struct Reader<'a> {
+    /// The lines with their drives, if they are known.
+    sites: Option<Vec<Site<'a>>>,
+    problems: Vec<Problem>,
+}
+
+impl Reader<'_> {
+    fn scenario(&mut self, file: &Value) -> Scenario {
+        let mut head = file.clone();
+        let steps = head.as_mapping_mut().and_then(|head| head.remove("steps"));
+        let root = Path::root();
+        let head: Option<Head> = section::read(&head, &root, KEYS, &mut self.problems);
+        let limit = head.and_then(|head| self.time(head.limit.as_ref(), &root.key("limit")));
+        let path = root.key("steps");
+        let items = match steps {
+            Some(Value::Sequence(items)) => items,
+            Some(_) => {
+                self.refuse(&path, "a list of steps should stand here", None);
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        if items.is_empty() && self.problems.is_empty() {
+            self.problems.push(Problem::key(path.clone(), "a scenario needs a step"));
+        }
+        let count = self.sites.as_ref().map_or(1, Vec::len);
+        let limit = limit.map(|limit| Instant::ZERO + limit);
+        let mut parts = vec![Part { steps: Vec::new(), limit }; count];
+        for (i, value) in items.iter().enumerate() {
+            let path = path.index(i);
+            let raw: Option<RawStep> = section::read(value, &path, KEYS, &mut self.problems);
+            let Some(raw) = raw else { continue };
+            let line = self.line(&raw, &path);
+            let step = self.step(&raw, line, &path);
+            parts[line.unwrap_or(0)].steps.extend(step);
+        }
+        Scenario { parts }
+    }
+
+    /// Which line the step is about.
+    fn line(&mut self, raw: &RawStep, path: &Path) -> Option<usize> {
+        let (Some(sites), Some(name)) = (&self.sites, &raw.line) else {
+            return self.sites.as_ref().map(|_| 0);
+        };
+        let names: Vec<_> = sites.iter().map(|site| site.line.name.as_str()).collect();
+        let at = names.iter().position(|it| it == name);
+        if at.is_none() {
+            let advice = suggest::did_you_mean(name, names.iter().copied());
+            let problem =
+                Problem::value(path.key("line"), format!("the bench has no line `{name}`"));
+            self.problems.push(problem.advise_if(advice));
+        }
+        at
+    }
+
+    fn step(&mut self, raw: &RawStep, line: Option<usize>, path: &Path) -> Option<Step> {
+        let drive = self.drive(line, raw.unit, DriveId(0), &path.key("unit"));
+        if raw.orders.is_empty() && raw.expect.is_empty() && raw.repeat.is_none() {
+            self.refuse(
+                path,
+                "this step does nothing and expects nothing",
+                Some("give `do` or `expect`"),
+            );
+        }
+        if raw.within.is_some() && raw.expect.is_empty() {
+            let problem =
+                Problem::key(path.key("within"), "`within` changes nothing without `expect`");
+            self.problems.push(problem);
+        }
+        let trigger = self.trigger(raw, line, drive, path);
+        let commands = self.commands(raw, line, drive, path);
+        let repeat = raw.repeat.as_ref().and_then(|it| self.repeat(it, raw, path));
+        let mut expect = Vec::new();
+        for (i, condition) in raw.expect.iter().enumerate() {
+            expect.extend(self.condition(condition, line, drive, &path.key("expect").index(i)));
+        }
+        let within = self.time(raw.within.as_ref(), &path.key("within")).unwrap_or_default();
+        let name = raw.name.clone();
+        Some(Step { name, trigger: trigger?, commands, repeat, expect, within })
+    }
+
+    fn trigger(
+        &mut self,
+        raw: &RawStep,
+        line: Option<usize>,
+        drive: DriveId,
+        path: &Path,
+    ) -> Option<Trigger> {
+        let given = [
+            ("at", raw.at.is_some()),
+            ("wait", raw.wait.is_some()),
+            ("after", raw.after.is_some()),
+            ("when", raw.when.is_some()),
+        ];
+        let mut given = given.iter().filter(|(_, given)| *given).map(|(key, _)| *key);
+        given.next();
+        if let Some(second) = given.next() {
+            let what = "a step waits for one thing, and this is another";
+            self.problems.push(Problem::key(path.key(second), what).advise("make it two steps"));
+        }
+        if raw.at.is_some() {
+            let at = self.time(raw.at.as_ref(), &path.key("at"))?;
+            return Some(Trigger::At(Instant::ZERO + at));
+        }
+        if let Some(after) = &raw.after {
+            return self.after(after, line, &path.key("after"));
+        }
+        if let Some(condition) = &raw.when {
+            let condition = self.condition(condition, line, drive, &path.key("when"));
+            return condition.map(Trigger::When);
+        }
+        let wait = self.time(raw.wait.as_ref(), &path.key("wait"));
+        Some(Trigger::Wait(wait.unwrap_or_default()))
+    }
+
+    fn after(&mut self, raw: &RawCount, line: Option<usize>, path: &Path) -> Option<Trigger> {
+        if raw.n == 0 {
+            self.refuse(&path.key("n"), "to wait for no transaction is not to wait", None);
+        }
+        let path = path.key("unit");
+        let drive = raw.unit.map(|unit| self.drive(line, Some(unit), DriveId(0), &path));
+        Some(Trigger::After { n: raw.n, kind: raw.kind, drive })
+    }
+
+    fn repeat(
+        &mut self,
+        repeat: &RawRepeat,
+        raw: &RawStep,
+        path: &Path,
+    ) -> Option<(u32, Duration)> {
+        let own = path.key("repeat");
+        let every = self.time(Some(&repeat.every), &own.key("every"))?;
+        if every.is_zero() {
+            self.refuse(&own.key("every"), "there is a time from one to the next", None);
+        }
+        if repeat.times < 2 {
+            self.refuse(&own.key("times"), "to repeat is to do it twice or more often", None);
+        }
+        let orders: Vec<_> = raw.orders.iter().map(|it| it.trim_start()).collect();
+        if orders.is_empty() {
+            let problem = Problem::key(own, "`repeat` changes nothing without `do`");
+            self.problems.push(problem);
+        } else if orders.iter().any(|it| it.starts_with("fault ") || it.starts_with("no_fault ")) {
+            let problem = Problem::key(own, "a rule comes and goes once");
+            self.problems.push(problem.advise("rules have keys for their turns: `every`, `count`"));
+        }
+        Some((repeat.times, every))
+    }
+
+    fn commands(
+        &mut self,
+        raw: &RawStep,
+        line: Option<usize>,
+        drive: DriveId,
+        path: &Path,
+    ) -> Vec<Command> {
+        let mut commands = Vec::new();
+        for (i, text) in raw.orders.iter().enumerate() {
+            let path = path.key("do").index(i);
+            let site = line.and_then(|line| self.sites.as_mut()?.get_mut(line));
+            let read = Order::parse(text).and_then(|order| match site {
+                Some(site) => site.commands(&order, drive),
+                None => Ok(Vec::new()),
+            });
+            match read {
+                Ok(more) => commands.extend(more),
+                Err(NoOrder { what, advice }) => {
+                    self.problems.push(Problem::value(path, what).advise_if(advice));
+                }
+            }
+        }
+        commands
+    }
+
+    fn condition(
+        &mut self,
+        raw: &RawCondition,
+        line: Option<usize>,
+        drive: DriveId,
+        path: &Path,
+    ) -> Option<Condition> {
+        let drive = self.drive(line, raw.unit, drive, &path.key("unit"));
+        let subject = self.subject(raw, line, drive, path);
+        let test = self.test(raw, path);
+        Some(Condition { drive, subject: subject?, test: test? })
+    }
+
+    fn subject(
+        &mut self,
+        raw: &RawCondition,
+        line: Option<usize>,
+        drive: DriveId,
+        path: &Path,
+    ) -> Option<Subject> {
+        match (&raw.signal, &raw.quantity, &raw.register) {
+            (Some(name), None, None) => {
+                let signal = Output::parse(name).map(Subject::Signal);
+                self.known(signal, "signal", name, Output::ALL.iter().map(|it| it.name()), path)
+            }
+            (None, Some(name), None) => {
+                let quantity = Quantity::parse(name).map(Subject::Quantity);
+                self.known(
+                    quantity,
+                    "quantity",
+                    name,
+                    Quantity::ALL.iter().map(|it| it.name()),
+                    path,
+                )
+            }
+            (None, None, Some(register)) => {
+                let site = self.sites.as_ref()?.get(line?)?;
+                let map = &site.model(drive).map;
+                let name = match register {
+                    RawRegister::Address(address) => address.to_string(),
+                    RawRegister::Name(name) => name.clone(),
+                };
+                let row = map.find(&name).map(Subject::Row);
+                let ids: Vec<String> = map.rows().map(|(_, row)| row.id.clone()).collect();
+                self.known(row, "register", &name, ids.iter().map(String::as_str), path)
+            }
+            _ => {
+                let what = "a condition looks at one of signal, quantity, register";
+                self.refuse(path, what, None);
+                None
+            }
+        }
+    }
+
+    /// The thing called `name`, or a problem with it.
+    fn known<'n, T>(
+        &mut self,
+        found: Option<T>,
+        key: &str,
+        name: &str,
+        names: impl Iterator<Item = &'n str>,
+        path: &Path,
+    ) -> Option<T> {
+        if found.is_none() {
+            let advice = suggest::did_you_mean(name, names);
+            let problem = Problem::value(path.key(key), format!("no {key} `{name}`"));
+            self.problems.push(problem.advise_if(advice));
+        }
+        found
+    }
+
+    fn test(&mut self, raw: &RawCondition, path: &Path) -> Option<Test> {
+        let window = raw.above.is_some() || raw.below.is_some();
+        let test = match (&raw.is, raw.signal.is_some()) {
+            (Some(RawLevel::Word(word)), true) if !window => match word.as_str() {
+                "on" => Some(Test::Is(1)),
+                "off" => Some(Test::Is(0)),
+                _ => None,
+            },
+            (Some(RawLevel::Number(number)), false) if !window => Some(Test::Is(*number)),
+            (None, false) if window => Some(Test::Within(raw.above, raw.below)),
+            _ => None,
+        };
+        if test.is_none() {
+            let what = match raw.signal.is_some() {
+                true => "a signal `is` on or off",
+                false => "a number `is` another, or lies `above` one, `below` one or between both",
+            };
+            self.refuse(path, what, None);
+        }
+        if let (Some(above), Some(below)) = (raw.above, raw.below)
+            && below.saturating_sub(above) < 2
+        {
+            self.refuse(
+                &path.key("below"),
+                format!("no number lies between {above} and {below}"),
+                None,
+            );
+        }
+        test
+    }
+
+    /// The drive that answers to `unit` at power-on, or `default`.
+    fn drive(
+        &mut self,
+        line: Option<usize>,
+        unit: Option<u8>,
+        default: DriveId,
+        path: &Path,
+    ) -> DriveId {
+        let site = line.and_then(|line| self.sites.as_ref()?.get(line));
+        let (Some(unit), Some(site)) = (unit, site) else { return default };
+        match site.find(unit) {
+            Some(drive) => drive,
+            None => {
+                self.refuse(path, format!("nobody answers to unit {unit} on this line"), None);
+                default
+            }
+        }
+    }
+
+    fn time(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
+        let time = parse_duration(text?);
+        if time.is_none() {
+            self.refuse(path, "a time has a unit", Some("write 5s, 200ms or 2min"));
+        }
+        time
+    }
+
+    fn refuse(&mut self, path: &Path, what: impl Into<String>, advice: Option<&str>) {
+        let problem = Problem::value(path.clone(), what);
+        self.problems.push(problem.advise_if(advice.map(str::to_owned)));
+    }
+}

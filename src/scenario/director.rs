@@ -1,0 +1,229 @@
+//! Carries out the steps of one line: it looks at the bus whenever something happens there, and gives it commands.
+//!
+//! It is a value like the bus: time and input come from outside, in the order of [`Director::advance_to`], then the
+//! input, then [`Director::look`]. A condition is looked at whenever something happens on the line, and at the instant
+//! at which it is going to hold by itself; nothing is polled.
+
+use super::step::{Step, Trigger};
+use crate::bus::{Bus, Command, Heard};
+use crate::event::{Outcome, Remark};
+use crate::time::{Duration, Instant};
+
+/// What became of a step that expects something, or that failed otherwise.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verdict {
+    /// The step.
+    pub step: String,
+    /// When it was settled.
+    pub at: Instant,
+    /// Time since the step above was done.
+    pub took: Duration,
+    /// Why it failed, if it did.
+    pub failure: Option<String>,
+}
+
+/// The steps of one line, and how far they are.
+#[derive(Debug, Clone)]
+pub struct Director {
+    steps: Vec<Step>,
+    limit: Option<Instant>,
+    next: usize,
+    doing: Doing,
+    /// When the step above was done, and what the drives had heard by then.
+    since: Instant,
+    heard: Vec<Heard>,
+    /// When to look again, if nothing happens on the line before.
+    due: Option<Instant>,
+    verdicts: Vec<Verdict>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Doing {
+    Waits,
+    Repeats { left: u32, at: Instant },
+    Expects { until: Instant },
+}
+
+impl Director {
+    /// For a line that is switched on at the beginning of time; all is to be done until `limit`.
+    pub fn new(steps: Vec<Step>, limit: Option<Instant>) -> Self {
+        Self {
+            steps,
+            limit,
+            next: 0,
+            doing: Doing::Waits,
+            since: Instant::ZERO,
+            heard: Vec::new(),
+            due: Some(Instant::ZERO),
+            verdicts: Vec::new(),
+        }
+    }
+
+    /// Is nothing left to do?
+    pub fn is_over(&self) -> bool {
+        self.next >= self.steps.len()
+    }
+
+    /// When it has to be called at the latest, apart from when the bus wants to be woken.
+    pub fn poll_at(&self) -> Option<Instant> {
+        self.due
+    }
+
+    /// Lets time pass for the bus up to `now`, and carries out what comes meanwhile, each thing at its own instant;
+    /// of one instant the bus's first.
+    pub fn advance_to(&mut self, bus: &mut Bus, now: Instant) {
+        loop {
+            let woken = bus.poll_at().map(|wake| wake.at);
+            let next = [woken, self.due].into_iter().flatten().min();
+            let Some(at) = next.filter(|at| *at <= now) else { break };
+            bus.advance_to(at);
+            self.look(bus);
+        }
+        bus.advance_to(now);
+    }
+
+    /// Carries out what is to be done right now: after input, and whatever else may have changed something.
+    pub fn look(&mut self, bus: &mut Bus) {
+        bus.catch_up();
+        while self.go_on(bus) {
+            bus.catch_up();
+        }
+        self.due = self.next_look(bus);
+    }
+
+    /// The run is over at `now`: what has not come has failed.
+    pub fn finish(&mut self, now: Instant) {
+        while !self.is_over() {
+            let why = self.unsettled();
+            self.judge(now, Some(why.into()));
+        }
+        self.due = None;
+    }
+
+    /// What became of the steps that are over.
+    pub fn verdicts(&self) -> &[Verdict] {
+        &self.verdicts
+    }
+
+    /// One thing is done. Was there any?
+    fn go_on(&mut self, bus: &mut Bus) -> bool {
+        let now = bus.now();
+        let Some(step) = self.steps.get(self.next) else { return false };
+        if self.limit.is_some_and(|limit| limit <= now) {
+            let why = self.unsettled();
+            self.settle(bus, Some(why.into()));
+            self.finish(now);
+            return false;
+        }
+        match self.doing {
+            Doing::Waits if self.has_come(&step.trigger, bus) => {
+                let times = step.repeat.map_or(1, |(times, _)| times);
+                self.act(bus, times);
+            }
+            Doing::Repeats { left, at } if at <= now => self.act(bus, left),
+            Doing::Expects { until } => {
+                let lacks = step.expect.iter().find(|it| !it.holds(bus.drive(it.drive)));
+                match lacks.map(|it| it.tell(bus)) {
+                    Some(_) if now < until => return false,
+                    failure => self.settle(bus, failure),
+                }
+            }
+            Doing::Waits | Doing::Repeats { .. } => return false,
+        }
+        true
+    }
+
+    fn has_come(&self, trigger: &Trigger, bus: &Bus) -> bool {
+        match *trigger {
+            Trigger::At(at) => at <= bus.now(),
+            Trigger::Wait(time) => self.since + time <= bus.now(),
+            Trigger::When(condition) => condition.holds(bus.drive(condition.drive)),
+            Trigger::After { n, kind, drive } => {
+                let drives =
+                    bus.drives().map(|(id, _)| id).filter(|id| drive.is_none_or(|it| it == *id));
+                let new = drives.map(|id| {
+                    let before = self.heard.get(usize::from(id.0)).copied().unwrap_or_default();
+                    kind.count(bus.heard(id)) - kind.count(before)
+                });
+                new.sum::<u64>() >= n
+            }
+        }
+    }
+
+    /// Does what the step says, so many times from now on.
+    fn act(&mut self, bus: &mut Bus, times: u32) {
+        let (now, step) = (bus.now(), &self.steps[self.next]);
+        tell(bus, step, Outcome::Begins, String::new());
+        for command in &step.commands {
+            if let Err(error) = bus.command(now, command.clone()) {
+                let what = error.to_string();
+                return self.settle(bus, Some(what));
+            }
+        }
+        match step.repeat {
+            Some((_, every)) if times > 1 => {
+                self.doing = Doing::Repeats { left: times - 1, at: now + every };
+            }
+            _ if step.expect.is_empty() => self.settle(bus, None),
+            _ => self.doing = Doing::Expects { until: now + step.within },
+        }
+    }
+
+    /// The step is over.
+    fn settle(&mut self, bus: &mut Bus, failure: Option<String>) {
+        let step = &self.steps[self.next];
+        if failure.is_some() || !step.expect.is_empty() {
+            let outcome = if failure.is_some() { Outcome::Failed } else { Outcome::Passed };
+            tell(bus, step, outcome, failure.clone().unwrap_or_default());
+        }
+        self.judge(bus.now(), failure);
+        self.heard = bus.drives().map(|(id, _)| bus.heard(id)).collect();
+    }
+
+    /// Notes what became of the step, and goes on to the next.
+    fn judge(&mut self, at: Instant, failure: Option<String>) {
+        let step = &self.steps[self.next];
+        if failure.is_some() || !step.expect.is_empty() {
+            let (step, took) = (step.name.clone(), at.since(self.since));
+            self.verdicts.push(Verdict { step, at, took, failure });
+        }
+        self.next += 1;
+        (self.doing, self.since) = (Doing::Waits, at);
+    }
+
+    /// Why the present step is not settled.
+    fn unsettled(&self) -> &'static str {
+        match self.doing {
+            Doing::Waits => "the run has ended before this step",
+            Doing::Repeats { .. } | Doing::Expects { .. } => "the run has ended during this step",
+        }
+    }
+
+    fn next_look(&self, bus: &mut Bus) -> Option<Instant> {
+        let step = self.steps.get(self.next)?;
+        let mut all = vec![self.limit];
+        match self.doing {
+            Doing::Repeats { at, .. } => all.push(Some(at)),
+            Doing::Waits => all.push(match step.trigger {
+                Trigger::At(at) => Some(at),
+                Trigger::Wait(time) => Some(self.since + time),
+                Trigger::After { .. } => None,
+                Trigger::When(it) => bus.foresee(it.drive, |drive| it.side(drive)),
+            }),
+            Doing::Expects { until } => {
+                all.push(Some(until));
+                let foreseen =
+                    |it: &super::Condition| bus.foresee(it.drive, |drive| it.side(drive));
+                all.extend(step.expect.iter().map(foreseen));
+            }
+        }
+        all.into_iter().flatten().min()
+    }
+}
+
+fn tell(bus: &mut Bus, step: &Step, outcome: Outcome, what: String) {
+    let remark = Remark { step: step.name.clone(), outcome, what };
+    // Only drives and rules refuse commands.
+    let told = bus.command(bus.now(), Command::Tell(remark));
+    debug_assert!(told.is_ok());
+}

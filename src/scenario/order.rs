@@ -1,0 +1,168 @@
+//! Something to do to a drive or to the weather, as one line of text: `terminal I1 on`, `hold overload on`.
+//!
+//! Scenarios and transcripts speak this language.
+
+use crate::bus::Command;
+use crate::event::{DriveId, Trouble};
+use crate::model::Model;
+use crate::problem::suggest;
+use crate::time::{Duration, parse_duration};
+use crate::words::{AlarmCause, Word};
+
+/// What can be written.
+const FORMS: [&str; 13] = [
+    "terminal NAME on|off",
+    "stick NAME on|off",
+    "bounce NAME TIMES EVERY",
+    "raise CAUSE",
+    "hold CAUSE on|off",
+    "block on|off",
+    "encoder on|off",
+    "freeze on|off",
+    "power on",
+    "power off",
+    "power_cycle",
+    "fault SPEC",
+    "no_fault NAME",
+];
+
+/// Something to do, with terminals by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Order {
+    /// Put a signal on a terminal, or take it off.
+    Terminal(String, bool),
+    /// Have a terminal keep its level, or no longer.
+    Stick(String, bool),
+    /// Have a terminal leave its level and come back so many times, with this time from edge to edge.
+    Bounce(String, u16, Duration),
+    /// Trip with an alarm.
+    Raise(AlarmCause),
+    /// Something is wrong from now on, or no longer.
+    Trouble(Trouble, bool),
+    /// Power on or off.
+    Power(bool),
+    /// Power off and on.
+    PowerCycle,
+    /// Put a fault rule in compact form on the line.
+    Fault(String),
+    /// Take the rule of that name off the line.
+    NoFault(String),
+}
+
+/// Why a line is no order, or none for this drive.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoOrder {
+    /// Why.
+    pub what: String,
+    /// What to do.
+    pub advice: Option<String>,
+}
+
+impl Order {
+    /// Reads one line.
+    ///
+    /// # Errors
+    /// If it is none of the forms.
+    pub fn parse(text: &str) -> Result<Self, NoOrder> {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        Ok(match words.as_slice() {
+            ["terminal", name, level] => Self::Terminal((*name).into(), is_on(level)?),
+            ["stick", name, level] => Self::Stick((*name).into(), is_on(level)?),
+            ["bounce", name, times, every] => {
+                let times = times.parse().ok().filter(|times| *times > 0);
+                let numbers = times.zip(parse_duration(every));
+                let (times, every) = numbers.ok_or_else(|| {
+                    no("a contact bounces so many times, 1 to 65535, with a time from edge to edge")
+                })?;
+                Self::Bounce((*name).into(), times, every)
+            }
+            ["raise", cause] => Self::Raise(cause_of(cause)?),
+            ["hold", cause, level] => {
+                Self::Trouble(Trouble::Cause(cause_of(cause)?), is_on(level)?)
+            }
+            ["block", level] => Self::Trouble(Trouble::Blocked, is_on(level)?),
+            ["encoder", level] => Self::Trouble(Trouble::EncoderLost, !is_on(level)?),
+            ["freeze", level] => Self::Trouble(Trouble::Frozen, is_on(level)?),
+            ["power", level] => Self::Power(is_on(level)?),
+            ["power_cycle"] => Self::PowerCycle,
+            // A value may have blanks inside.
+            ["fault", spec @ ..] if !spec.is_empty() => Self::Fault(spec.join(" ")),
+            ["no_fault", name] => Self::NoFault((*name).into()),
+            [verb, ..] => return Err(no_form(verb)),
+            [] => return Err(no_form("")),
+        })
+    }
+
+    /// The command that it is for `drive`, which is of `model`; `None` where it is about the line.
+    ///
+    /// # Errors
+    /// If the model has no such terminal or no such alarm.
+    pub fn command(&self, drive: DriveId, model: &Model) -> Result<Option<Command>, NoOrder> {
+        Ok(Some(match self {
+            Self::Terminal(name, signal) => {
+                Command::Terminal { drive, index: terminal(model, name)?, signal: *signal }
+            }
+            Self::Stick(name, on) => {
+                let trouble = Trouble::Stuck(terminal(model, name)?);
+                Command::Trouble { drive, trouble, on: *on }
+            }
+            Self::Bounce(name, times, every) => {
+                let index = terminal(model, name)?;
+                Command::Bounce { drive, index, times: *times, every: *every }
+            }
+            Self::Raise(cause) | Self::Trouble(Trouble::Cause(cause), _)
+                if model.wiring.alarm(*cause).is_none() =>
+            {
+                return Err(no(format!("the model has no alarm for `{}`", cause.name())));
+            }
+            Self::Raise(cause) => Command::Raise { drive, cause: *cause },
+            Self::Trouble(trouble, on) => Command::Trouble { drive, trouble: *trouble, on: *on },
+            Self::Power(on) => Command::Power { drive, on: *on },
+            Self::PowerCycle => Command::PowerCycle { drive },
+            Self::Fault(_) | Self::NoFault(_) => return Ok(None),
+        }))
+    }
+}
+
+fn no(what: impl Into<String>) -> NoOrder {
+    NoOrder { what: what.into(), advice: None }
+}
+
+/// The verb is unknown, or something else should stand behind it.
+fn no_form(verb: &str) -> NoOrder {
+    let verb_of = |form: &'static str| form.split(' ').next().unwrap_or_default();
+    let forms: Vec<_> = FORMS.into_iter().filter(|form| verb_of(form) == verb).collect();
+    if let [first, ..] = forms.as_slice() {
+        let form = if forms.len() > 1 { forms.join("` or `") } else { (*first).to_owned() };
+        return NoOrder { what: format!("write `{form}`"), advice: None };
+    }
+    let advice = suggest::did_you_mean(verb, FORMS.into_iter().map(verb_of));
+    let known = advice.unwrap_or_else(|| format!("write one of {}", FORMS.join(", ")));
+    NoOrder { what: format!("nobody knows how to `{verb}`"), advice: Some(known) }
+}
+
+fn is_on(level: &str) -> Result<bool, NoOrder> {
+    match level {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(no(format!("`on` or `off` should stand here, not `{level}`"))),
+    }
+}
+
+fn cause_of(name: &str) -> Result<AlarmCause, NoOrder> {
+    AlarmCause::parse(name).ok_or_else(|| {
+        let advice = suggest::did_you_mean(name, AlarmCause::ALL.iter().map(|it| it.name()));
+        NoOrder { what: format!("no alarm cause `{name}`"), advice }
+    })
+}
+
+fn terminal(model: &Model, name: &str) -> Result<u8, NoOrder> {
+    let terminals = model.wiring.input_terminals.as_ref();
+    let names: Vec<String> =
+        terminals.map_or(Vec::new(), |it| (0..it.functions.len()).map(|i| it.name(i)).collect());
+    let index = names.iter().position(|it| it == name);
+    index.map(|index| index as u8).ok_or_else(|| {
+        let advice = suggest::did_you_mean(name, names.iter().map(String::as_str));
+        NoOrder { what: format!("no input terminal `{name}`"), advice }
+    })
+}
