@@ -11,6 +11,7 @@ mod answer;
 mod command;
 mod held;
 mod output;
+mod unheard;
 mod weather;
 
 pub use command::{Command, CommandError, Reply};
@@ -28,6 +29,7 @@ use agenda::Agenda;
 use held::Held;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
+use unheard::Unheard;
 
 /// Bytes that a line looks at before it is asked what it heard.
 const CHUNK: usize = 256;
@@ -48,6 +50,7 @@ pub struct Bus {
     agenda: Agenda,
     faults: Faults,
     held: Held,
+    unheard: Unheard,
     outputs: VecDeque<Output>,
 }
 
@@ -73,6 +76,7 @@ impl Bus {
             agenda: Agenda::default(),
             faults: Faults::default(),
             held: Held::default(),
+            unheard: Unheard::default(),
             outputs: VecDeque::with_capacity(16),
         }
     }
@@ -137,6 +141,11 @@ impl Bus {
     /// How the line talks, if it is a serial one.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
+    }
+
+    /// How often a master has given a drive an order again whose answer it can't have heard.
+    pub fn repeated_commands(&self, id: DriveId) -> u64 {
+        self.unheard.repeated(id)
     }
 
     /// The time up to which everything has happened.

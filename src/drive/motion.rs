@@ -63,8 +63,8 @@ impl Drive {
         changed
     }
 
-    /// Carries out an order to the axis.
-    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) {
+    /// Carries out an order to the axis. Returns whether it obeys.
+    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) -> bool {
         let (now, model) = (self.now, self.model.clone());
         let rows = &model.wiring.axis.settings;
         let done = match action {
@@ -93,6 +93,7 @@ impl Drive {
         if let Err(why) = done {
             self.changes.push_back(Change::Ignored { action, why });
         }
+        done.is_ok()
     }
 
     /// Is `action` one that needs an axis at rest, while it moves?

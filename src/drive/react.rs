@@ -1,6 +1,6 @@
 //! What a committed write sets off: input words refreshed, commands given, the address changed.
 
-use super::Drive;
+use super::{Drive, Given};
 use crate::bank::WritePlan;
 use crate::event::Change;
 use crate::model::{Applies, Reaction};
@@ -74,8 +74,7 @@ impl Drive {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         let (_, action) = *actions.iter().find(|(it, _)| *it == value)?;
-        self.act(action, Modifiers::default());
-        Some(action)
+        Some(self.give(action, Modifiers::default()))
     }
 
     fn trigger(&mut self, index: u16, raw: u32) -> Option<Action> {
@@ -88,8 +87,16 @@ impl Drive {
             .filter(|(bit, _)| is_set(*bit))
             .for_each(|(_, it)| modifiers.insert(*it));
         let (_, action) = *triggers.actions.iter().find(|(bit, _)| is_set(*bit))?;
-        self.act(action, modifiers);
-        Some(action)
+        Some(self.give(action, modifiers))
+    }
+
+    /// Carries out what a master orders, and keeps in mind what a second time would add to.
+    fn give(&mut self, action: Action, modifiers: Modifiers) -> Action {
+        let obeyed = self.act(action, modifiers);
+        if action.adds_up(modifiers) {
+            self.given = Some(Given { action, obeyed });
+        }
+        action
     }
 
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on.

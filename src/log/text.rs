@@ -62,6 +62,12 @@ fn what(what: &What, bus: &Bus) -> String {
             let (name, _) = bus.faults().told(*rule);
             format!("fault {name}: {} (hit {hit})", mishap_text(*unit, *mishap))
         }
+        What::RepeatedCommand { unit, action, count, .. } => {
+            let name = action.name();
+            format!(
+                "unit {unit} repeated_command: {name} again, whose answer nobody heard (no. {count})"
+            )
+        }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
         }
