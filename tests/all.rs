@@ -16,6 +16,7 @@ mod schema;
 mod shell;
 mod source;
 mod state;
+mod storm;
 mod tidy;
 mod transcripts;
 mod words;

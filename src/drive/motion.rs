@@ -4,12 +4,23 @@
 use super::Drive;
 use crate::behaviour::{Stage, Wants};
 use crate::event::Change;
+use crate::motion::{Machine, State};
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
 
 impl Drive {
     /// Where the axis stands, in the drive's coordinate.
     pub(super) fn position(&self) -> i64 {
         self.motor.position(self.now).saturating_sub(self.zero)
+    }
+
+    /// Where the axis is and how fast it goes, in the machine's coordinate, which no register shows.
+    pub fn axis_state(&self) -> State {
+        self.motor.state(self.now)
+    }
+
+    /// What stands along the axis.
+    pub fn machine(&self) -> &Machine {
+        self.motor.machine()
     }
 
     /// How fast the axis goes, in revolutions a minute.
