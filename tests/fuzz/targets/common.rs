@@ -2,10 +2,11 @@
 
 #![allow(dead_code)] // Each target is a program of its own and takes what it needs.
 
-use drivemu::bench::{BuiltinLibrary, Library};
+use drivemu::bench::Library;
 use drivemu::bus::Bus;
 use drivemu::event::Event;
-use drivemu::model::{Choices, Model};
+use drivemu::model::builtin::Builtin;
+use drivemu::model::{Choices, Model, load};
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
 use std::collections::BTreeMap;
@@ -25,8 +26,11 @@ pub fn render_all(problems: &[Problem], text: &str) {
 pub struct Compiled;
 
 impl Library for Compiled {
+    /// By file name only: to look a product up takes compiling them all, far longer than a bench.
     fn fetch(&self, name: &str) -> Result<(String, String), String> {
-        BuiltinLibrary.fetch(name)
+        let known = Builtin::all().find(|it| it.stem() == name);
+        let known = known.ok_or_else(|| format!("no model `{name}`"))?;
+        Ok((known.file.into(), known.text.into()))
     }
 
     fn model(&self, name: &str, choices: &Choices) -> Result<Arc<Model>, String> {
@@ -34,6 +38,11 @@ impl Library for Compiled {
         static KNOWN: Mutex<Known> = Mutex::new(Known::new());
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
         let key = (name.to_owned(), choices.clone());
-        known.entry(key).or_insert_with(|| BuiltinLibrary.model(name, choices)).clone()
+        let compile = || {
+            let (_, text) = self.fetch(name)?;
+            let model = load(&text, choices).map_err(|problems| problems[0].to_string())?;
+            Ok(Arc::new(model))
+        };
+        known.entry(key).or_insert_with(compile).clone()
     }
 }
