@@ -93,6 +93,17 @@ pub enum What {
     },
     /// A step of a scenario.
     Step(RemarkId),
+    /// A master has given an order again whose answer it can't have heard, and the drive got it twice.
+    RepeatedCommand {
+        /// Who.
+        drive: DriveId,
+        /// The unit address that was asked.
+        unit: u8,
+        /// The order.
+        action: Action,
+        /// How often that has happened to this drive by now.
+        count: u64,
+    },
     /// A drive did something without being asked on this line, or as a consequence.
     Drive {
         /// Who.

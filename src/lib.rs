@@ -60,3 +60,8 @@ pub mod words;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The examples on pages are compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/determinism.md")]
+pub struct Pages;

@@ -19,6 +19,7 @@ mod schema;
 mod shell;
 mod source;
 mod state;
+mod storm;
 mod tidy;
 mod transcripts;
 mod troubles;

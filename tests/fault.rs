@@ -8,6 +8,7 @@ mod log;
 #[cfg(feature = "cli")]
 mod master;
 mod page;
+mod repeated;
 mod streams;
 mod turns;
 

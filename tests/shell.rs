@@ -1,6 +1,7 @@
 //! The program and its ports, from outside: few tests and slow ones, because they wait for the wall.
 
 mod command_line;
+mod determinism;
 mod masters;
 mod ports;
 mod program;

@@ -69,6 +69,7 @@ impl Bus {
         let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
         let now = self.now;
         let mut strike = self.faults.strike(now, unit, &request);
+        let mut repeated = None;
         let adu = Adu { unit, pdu: &request };
         let function = adu.function();
         let exception = |code| Response::Exception(Exception { function, code }).encode();
@@ -80,14 +81,20 @@ impl Bus {
                 Ok(response) => (response.encode(), None),
                 Err(refusal) => (exception(refusal.code), Some(refusal)),
             };
+            let given = drive.given();
             self.count(id, function);
             // What an answer confirms must be there after a power failure.
             self.keep(id);
             self.send(link, id, adu, answer, strike.as_mut());
             self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
+            let arrives = strike.as_ref().map_or(Some(now), |it| it.arrives(now));
+            repeated = self.unheard.executed(now, id, request, given, arrives);
         }
         self.tell(unit, strike.as_ref());
         self.after_drive(id);
+        if let Some((action, count)) = repeated {
+            self.emit(What::RepeatedCommand { drive: id, unit, action, count });
+        }
     }
 
     /// Every drive executes, none answers (serial line, 2.1).

@@ -15,6 +15,7 @@ mod held;
 mod others;
 mod outlet;
 mod output;
+mod unheard;
 mod weather;
 
 pub use command::{Command, CommandError, Reply};
@@ -35,6 +36,7 @@ use others::Others;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
+use unheard::Unheard;
 
 /// Bytes that a line looks at before it is asked what it heard.
 const CHUNK: usize = 256;
@@ -65,6 +67,7 @@ pub struct Bus {
     /// Bytes on the wire to the master.
     leaving: Timed,
     others: Option<Others>,
+    unheard: Unheard,
     outputs: VecDeque<Output>,
 }
 
@@ -100,6 +103,7 @@ impl Bus {
             held: Held::default(),
             leaving: Timed::default(),
             others: None,
+            unheard: Unheard::default(),
             outputs: VecDeque::with_capacity(16),
         }
     }
@@ -168,6 +172,11 @@ impl Bus {
     /// How the line talks, if it is a serial one.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
+    }
+
+    /// How often a master has given a drive an order again whose answer it can't have heard.
+    pub fn repeated_commands(&self, id: DriveId) -> u64 {
+        self.unheard.repeated(id)
     }
 
     /// The time up to which everything has happened.

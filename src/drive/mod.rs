@@ -37,6 +37,15 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use troubles::Troubles;
 
+/// An order that a request gave, one of those that twice are not the same as once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Given {
+    /// The order.
+    pub action: Action,
+    /// Did the drive obey?
+    pub obeyed: bool,
+}
+
 /// One station of a drive.
 #[derive(Debug)]
 pub struct Drive {
@@ -84,6 +93,8 @@ pub struct Drive {
     changes: VecDeque<Change>,
     /// A master has asked for a restart of the whole device, which only the bus knows.
     restart: bool,
+    /// What the request under way has ordered.
+    given: Option<Given>,
     read: [u16; 125],
 }
 
@@ -129,6 +140,7 @@ impl Drive {
             position_at_power_on: setup.position,
             changes: VecDeque::with_capacity(8),
             restart: false,
+            given: None,
             read: [0; 125],
         };
         drive.power_on(now);
@@ -165,6 +177,7 @@ impl Drive {
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
         self.advance_to(now);
         self.hear();
+        self.given = None;
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
             return Err(self.refuse(Cause::Function, Detail::Function(*function)));
         }
@@ -233,6 +246,11 @@ impl Drive {
     /// Has a master asked for a restart of the device since this was asked last?
     pub fn take_restart(&mut self) -> bool {
         std::mem::take(&mut self.restart)
+    }
+
+    /// The order that the last request gave, if it gave one that does something each time.
+    pub fn given(&self) -> Option<Given> {
+        self.given
     }
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
@@ -373,10 +391,13 @@ impl Drive {
         Some(Mode { ascii, settings: Settings { baud, format } })
     }
 
-    fn act(&mut self, action: Action, modifiers: Modifiers) {
+    /// Carries out `action`. Returns whether the drive obeys.
+    fn act(&mut self, action: Action, modifiers: Modifiers) -> bool {
         if self.waits_for_rest(action) {
-            return self.changes.push_back(Change::Ignored { action, why: Ignored::Moving });
+            self.changes.push_back(Change::Ignored { action, why: Ignored::Moving });
+            return false;
         }
+        let mut obeyed = true;
         let tell = &mut |change| self.changes.push_back(change);
         match action {
             Action::QuickStop
@@ -384,7 +405,7 @@ impl Drive {
             | Action::HomeStart
             | Action::MoveStart
             | Action::RunStart => {
-                self.order(action, modifiers);
+                obeyed = self.order(action, modifiers);
             }
             Action::Enable => self.servo.latch(true, tell),
             Action::Release => self.servo.latch(false, tell),
@@ -413,5 +434,6 @@ impl Drive {
             Action::PowerCycle => self.restart = true,
         }
         self.settle();
+        obeyed
     }
 }

@@ -5,6 +5,7 @@ use super::Drive;
 use crate::behaviour::{Stage, Wants};
 use crate::event::Change;
 use crate::model::AlarmStop;
+use crate::motion::{Machine, State};
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
 
 impl Drive {
@@ -23,6 +24,20 @@ impl Drive {
             self.reversed = reversed;
             self.zero = self.motor.position(self.now).saturating_sub(position);
         }
+    }
+
+    /// Where the axis is and how fast it goes, in the machine's coordinate, which no register shows and
+    /// which stays as it is when positive counts go the other way.
+    pub fn axis_state(&self) -> State {
+        let State { position, speed } = self.motor.feedback(self.now);
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        State { position: sign * position, speed: sign * speed }
+    }
+
+    /// What stands along the axis.
+    pub fn machine(&self) -> Machine {
+        let machine = *self.motor.machine();
+        if self.reversed { machine.mirrored() } else { machine }
     }
 
     /// How fast the axis goes, in revolutions a minute.
@@ -103,8 +118,8 @@ impl Drive {
         self.tell_stages(None);
     }
 
-    /// Carries out an order to the axis.
-    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) {
+    /// Carries out an order to the axis. Returns whether it obeys.
+    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) -> bool {
         let (now, model) = (self.now, self.model.clone());
         let rows = &model.wiring.axis.settings;
         let done = match action {
@@ -133,6 +148,7 @@ impl Drive {
         if let Err(why) = done {
             self.changes.push_back(Change::Ignored { action, why });
         }
+        done.is_ok()
     }
 
     /// Is `action` one that needs an axis at rest, while it moves?

@@ -1,11 +1,11 @@
 //! What a committed write sets off: input words refreshed, commands given, the address changed.
 
-use super::Drive;
+use super::{Drive, Given};
 use crate::bank::WritePlan;
 use crate::event::Change;
 use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
-use crate::words::{Modifiers, RowId};
+use crate::words::{Action, Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
@@ -81,7 +81,7 @@ impl Drive {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
         if let Some((_, action)) = actions.iter().find(|(it, _)| *it == value) {
-            self.act(*action, Modifiers::default());
+            self.give(*action, Modifiers::default());
         }
     }
 
@@ -95,7 +95,15 @@ impl Drive {
             .filter(|(bit, _)| is_set(*bit))
             .for_each(|(_, it)| modifiers.insert(*it));
         if let Some((_, action)) = triggers.actions.iter().find(|(bit, _)| is_set(*bit)) {
-            self.act(*action, modifiers);
+            self.give(*action, modifiers);
+        }
+    }
+
+    /// Carries out what a master orders, and keeps in mind what a second time would add to.
+    fn give(&mut self, action: Action, modifiers: Modifiers) {
+        let obeyed = self.act(action, modifiers);
+        if action.adds_up(modifiers) {
+            self.given = Some(Given { action, obeyed });
         }
     }
 

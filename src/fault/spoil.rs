@@ -3,6 +3,7 @@
 use super::Strike;
 use crate::event::Mishap;
 use crate::rng::Rng;
+use crate::time::Instant;
 use crate::wire::function::EXCEPTION;
 use crate::wire::{Coding, Frame, Pdu};
 
@@ -13,6 +14,29 @@ impl Strike {
     /// Does no drive see the request?
     pub fn loses_request(&self) -> bool {
         self.mishap == Mishap::RequestLost
+    }
+
+    /// When the reply of a drive has arrived whole, and as one that the master takes for the answer, if it
+    /// leaves at `now`. `None` for never: what is late comes when it has been given up.
+    pub fn arrives(&self, now: Instant) -> Option<Instant> {
+        match self.mishap {
+            Mishap::Delayed(by) => Some(now + by),
+            Mishap::Split { gap, .. } => Some(now + gap),
+            Mishap::Extra(_)
+            | Mishap::Garbage(_)
+            | Mishap::Duplicated
+            | Mishap::Exception(_)
+            | Mishap::Busy
+            | Mishap::Echoed => Some(now),
+            Mishap::RequestLost
+            | Mishap::ReplyLost
+            | Mishap::BadChecksum
+            | Mishap::BitsFlipped(_)
+            | Mishap::Truncated(_)
+            | Mishap::Late
+            | Mishap::WrongUnit(_)
+            | Mishap::WrongFunction(_) => None,
+        }
     }
 
     /// The exception that answers in place of the drive, if one does.

@@ -81,6 +81,9 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             }
             ("step", fields)
         }
+        What::RepeatedCommand { unit, action, count, .. } => {
+            ("repeated_command", json!({"unit": unit, "action": action.name(), "count": count}))
+        }
         What::Drive { drive, unit, change } => change_fields(bus.drive(*drive), *unit, change),
     }
 }

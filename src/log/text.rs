@@ -70,6 +70,12 @@ fn what(what: &What, bus: &Bus) -> String {
                 Outcome::Failed => format!("step {} failed: {}", remark.step, remark.what),
             }
         }
+        What::RepeatedCommand { unit, action, count, .. } => {
+            let name = action.name();
+            format!(
+                "unit {unit} repeated_command: {name} again, whose answer nobody heard (no. {count})"
+            )
+        }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
         }

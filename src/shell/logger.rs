@@ -30,7 +30,8 @@ pub enum LogFormat {
 /// The event log of a run.
 #[derive(Debug)]
 pub struct Logger {
-    format: LogFormat,
+    /// How it looks on stdout; `None` for not at all.
+    format: Option<LogFormat>,
     /// Several lines: each event says on which it was.
     names: bool,
     to_file: bool,
@@ -46,11 +47,12 @@ struct Entry {
 }
 
 impl Logger {
-    /// Starts a log. `names`: should the text say on which line an event was?
+    /// Starts a log on stdout in `format`, and in a file as JSON. `names`: should the text say on which line
+    /// an event was?
     ///
     /// # Errors
     /// If the file can't be created.
-    pub fn start(format: LogFormat, names: bool, file: Option<&Path>) -> io::Result<Self> {
+    pub fn start(format: Option<LogFormat>, names: bool, file: Option<&Path>) -> io::Result<Self> {
         let file = file.map(File::create).transpose()?;
         let (queue, entries) = sync_channel(QUEUE);
         let to_file = file.is_some();
@@ -66,11 +68,11 @@ impl Logger {
     pub fn log(&mut self, event: &Event, name: &str, bus: &Bus) {
         let object = || json::object(event, name, bus).to_string();
         let file = self.to_file.then(object);
-        let stdout = match self.format {
+        let stdout = self.format.map(|format| match format {
             LogFormat::Json => file.clone().unwrap_or_else(object),
             LogFormat::Text => self.text(event, name, bus),
-        };
-        self.send(Entry { stdout: Some(stdout), file });
+        });
+        self.send(Entry { stdout, file });
     }
 
     fn text(&self, event: &Event, name: &str, bus: &Bus) -> String {
@@ -86,12 +88,12 @@ impl Logger {
         if self.dropped > 0 {
             let lost =
                 format!("{} lines of the log were lost: its reader is too slow", self.dropped);
-            let note = match self.format {
+            let stdout = self.format.map(|format| match format {
                 LogFormat::Text => lost.clone(),
                 LogFormat::Json => lost_object(&lost, self.dropped),
-            };
+            });
             let file = self.to_file.then(|| lost_object(&lost, self.dropped));
-            if queue.try_send(Entry { stdout: Some(note), file }).is_err() {
+            if queue.try_send(Entry { stdout, file }).is_err() {
                 self.dropped += 1;
                 return;
             }

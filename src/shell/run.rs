@@ -111,7 +111,7 @@ pub async fn run(bench: Bench, mut options: RunOptions) -> Result<Judged, OpenEr
         written(path, forget(path))?;
     }
     let names = bench.lines.len() > 1;
-    let logger = Logger::start(options.format, names, options.log_file.as_deref());
+    let logger = Logger::start(Some(options.format), names, options.log_file.as_deref());
     let logger = logger
         .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
     let log = Arc::new(Mutex::new(logger));

@@ -28,20 +28,42 @@
 //! ```
 
 use super::Rig;
-use crate::shell::{Clock, Frames, Served, serve_stream};
+use crate::shell::{Clock, Frames, Logger, Served, serve_stream};
 use std::future::Future;
 use std::io;
+use std::path::Path;
+use std::sync::{Arc, Mutex};
 use tokio::io::DuplexStream;
 
 /// A stream to put a master on, and the future that serves the drives of `rig` at its other end. Run the
 /// future beside the master (`tokio::spawn`, `try_join!`); it ends when the stream is dropped.
 pub fn stream(rig: Rig) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
+    served(rig, None)
+}
+
+/// The same, with the event log in the file at `log`, one JSON object a line. It is whole when the future has
+/// ended.
+///
+/// # Errors
+/// If the file can't be created.
+pub fn logged(
+    rig: Rig,
+    log: &Path,
+) -> io::Result<(DuplexStream, impl Future<Output = io::Result<()>> + use<>)> {
+    let logger = Logger::start(None, false, Some(log))?;
+    Ok(served(rig, Some(logger)))
+}
+
+fn served(
+    rig: Rig,
+    logger: Option<Logger>,
+) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
     let (master, drive) = tokio::io::duplex(4096);
     let (bus, frames) = (rig.fresh_bus(), Frames::Serial(rig.wire()));
     let serve = async move {
-        let clock = Clock::start(1.0);
+        let (clock, log) = (Clock::start(1.0), logger.map(|it| Arc::new(Mutex::new(it))));
         let line =
-            Served { name: "line".into(), bus, clock, frames, log: None, store: None, stage: None };
+            Served { name: "line".into(), bus, clock, frames, log, store: None, stage: None };
         serve_stream(line, drive).await
     };
     (master, serve)

@@ -30,6 +30,29 @@ words! {
     }
 }
 
+impl Action {
+    /// Does it say where to go from here, so that twice is not the same as once? The others say how things
+    /// are to be in the end.
+    pub fn adds_up(self, modifiers: Modifiers) -> bool {
+        match self {
+            Self::MoveStart => !modifiers.has(Modifier::Absolute),
+            Self::QuickStop
+            | Self::Stop
+            | Self::Enable
+            | Self::Release
+            | Self::ClearAlarmHistory => false,
+            Self::HomeStart
+            | Self::RunStart
+            | Self::AlarmReset
+            | Self::EncoderReset
+            | Self::ClearPosition
+            | Self::StoreAll
+            | Self::RestoreFactory
+            | Self::PowerCycle => true,
+        }
+    }
+}
+
 /// The modifiers that came with an action.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Modifiers(u8);

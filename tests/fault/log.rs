@@ -1,9 +1,22 @@
 //! What the log for programs says about each kind; the log for people stands in docs/faults.md.
 
-use super::{READ, ask, drive};
+use super::{READ, acme, ask, drive};
 use drivemu::fault::Kind;
 use drivemu::log::json::object;
 use serde_json::{Value, json};
+
+#[test]
+fn a_repeated_command_as_json() {
+    let mut rig = acme(&["lose_reply:count=1"]);
+    let row = rig.drive().model().wiring.commands[0].row;
+    let [high, low] = rig.drive().model().map.row(row).at.to_be_bytes();
+    (0..2).for_each(|_| drop(ask(&mut rig, &[6, high, low, 0, 4])));
+    let told = object(rig.events().last().expect("an event"), "line", rig.bus());
+    let text = "unit 1 repeated_command: clear_position again, whose answer nobody heard (no. 1)";
+    let want = json!({"t": 0.3, "line": "line", "event": "repeated_command", "unit": 1,
+        "action": "clear_position", "count": 1, "text": text});
+    assert_eq!(told, want);
+}
 
 #[test]
 fn each_kind_as_json() {

@@ -1,6 +1,6 @@
 //! A master that nobody here wrote notices each kind, under a paused clock: tokio-modbus.
 
-use super::drive;
+use super::{drive, drive_of};
 use drivemu::fault::Kind;
 use drivemu::testkit::live;
 use std::time::Duration;
@@ -44,6 +44,41 @@ async fn two_looks(spec: &str) -> [Seen; 2] {
     drop(master);
     serving.await.expect("no panic").expect("a clean end");
     seen
+}
+
+/// Where a stepper stands after a relative move by 1000 counts, given by a master that simply tries again, and
+/// the orders that the log says came again.
+async fn moved_by_a_stubborn_master(spec: &str) -> (u16, usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("log");
+    let rig = drive_of("yako-closed-loop", &[spec], 0);
+    let (stream, serve) = live::logged(rig, &file).expect("a file");
+    let serving = tokio::spawn(serve);
+    let mut master = rtu::attach_slave(stream, Slave(1));
+    let distance = master.write_multiple_registers(0x0024, &[0, 1000]).await;
+    distance.expect("an answer").expect("no exception");
+    for _ in 0..3 {
+        let order = master.write_single_register(0x0027, 1);
+        if tokio::time::timeout(Duration::from_secs(5), order).await.is_ok() {
+            break;
+        }
+    }
+    let end = tokio::time::timeout(Duration::from_secs(5), std::future::pending::<()>());
+    end.await.expect_err("five seconds");
+    let position = master.read_holding_registers(0x000A, 2).await;
+    let position = position.expect("an answer").expect("no exception");
+    drop(master);
+    serving.await.expect("no panic").expect("a clean end");
+    let log = std::fs::read_to_string(file).expect("the log");
+    (position[1], log.matches("\"event\":\"repeated_command\"").count())
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stubborn_master_moves_twice_and_is_told_on() {
+    let moved = moved_by_a_stubborn_master("lose_reply:register=0x0027,count=1").await;
+    assert_eq!(moved, (2000, 1));
+    let moved = moved_by_a_stubborn_master("lose_request:register=0x0027,count=1").await;
+    assert_eq!(moved, (1000, 0));
 }
 
 #[tokio::test(start_paused = true)]

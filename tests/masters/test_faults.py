@@ -94,3 +94,15 @@ def test_mbpoll_in_bad_weather(emulate):
 def test_a_mistake_is_told_with_a_caret():
     said = refused(drivemu("run", "hcfa-x", "--fault", "lose_reply:evry=10"), USAGE)
     assert "did you mean `every`?" in said and "^^^^" in said
+
+
+@pytest.mark.parametrize("kind, moved", [("lose_reply", 2000), ("lose_request", 1000)])
+def test_the_retries_of_pymodbus_move_twice(emulate, kind, moved):
+    """By its own default it repeats what nobody answered, whatever that was."""
+    emulator = emulate("yako-closed-loop", *TCP, "--fault", f"{kind}:register=0x0027,count=1", "--rate", 20)
+    endpoint = emulator.endpoint
+    with ModbusTcpClient(endpoint.host, port=endpoint.port, timeout=0.5) as master:
+        assert master.write_registers(0x0024, [0, 1000], device_id=1).registers is not None
+        assert not master.write_register(0x0027, 1, device_id=1).isError()
+        emulator.logged(rf"stands at {moved}$")
+    assert ("repeated_command: move_start again" in emulator.log) == (kind == "lose_reply")

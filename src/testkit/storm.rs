@@ -1,0 +1,194 @@
+//! Storms: a random master, random weather, terminals, alarms and power cuts, on lines with random drives, all from one
+//! seed. Whatever happens, some things hold:
+//!
+//! - a request has one answer at most, which comes from the unit that was asked and says what its drive did,
+//!   but for what a fault rule says that it did; nothing else leaves;
+//! - what is refused or only read leaves every row as it was, and what is written is written whole;
+//! - axes never jump and never leave their hard stops;
+//! - once a line has been silent, each drive on it hears what it is asked;
+//! - what will happen lies in the future once everything has been taken from the bus;
+//! - the same seed gives the same bytes and the same events, however often somebody looks.
+//!
+//! For whoever writes a model: a storm finds what no list of cases does.
+//!
+//! ```
+//! use drivemu::testkit::storm::{self, Options};
+//!
+//! let options = Options { steps: 20, ..Options::builtin() };
+//! for seed in storm::seeds(3) {
+//!     let report = storm::run(seed, &options).unwrap_or_else(|failure| panic!("{failure}"));
+//!     assert!(!report.events.is_empty());
+//! }
+//! ```
+//!
+//! A failure says its seed as `STORM_SEED=...`, and what is left of the steps when all that can be are left
+//! out. With that variable set, [`seeds`] gives this seed alone.
+
+mod axes;
+mod dice;
+mod drill;
+mod master;
+mod play;
+mod replies;
+mod rows;
+mod step;
+mod world;
+
+use crate::event::Event;
+use crate::model::builtin::Builtin;
+use crate::model::{Choices, Model};
+use crate::rng::Fork;
+use crate::time::Instant;
+use dice::Dice;
+use play::{Looks, Played, play};
+use std::sync::Arc;
+use step::Step;
+use thiserror::Error;
+use world::World;
+
+/// The environment variable that names the one seed to play.
+pub const SEED: &str = "STORM_SEED";
+
+/// What a storm may be made of.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The models that drives are drawn from; one at least.
+    pub models: Vec<Arc<Model>>,
+    /// How many things happen.
+    pub steps: usize,
+    /// A bug to be found, for those who test the storm itself.
+    #[doc(hidden)]
+    pub plant: Option<Plant>,
+}
+
+/// Bugs that a storm must find. Each is done around the drives, which have none of them.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plant {
+    /// An exception leaves twice.
+    AnswersTwice,
+    /// A refused write of many has changed its first row: the check gets to see another value from before.
+    WritesHalf,
+    /// Who looks seldom misses an event.
+    LosesEvent,
+}
+
+/// A storm that was weathered.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    /// The models of the drives on the line, in order.
+    pub models: Vec<String>,
+    /// Every byte that left the line.
+    pub sent: Vec<u8>,
+    /// Everything that happened.
+    pub events: Vec<Event>,
+}
+
+/// A storm in which something was not as it must be.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{}", self.text())]
+pub struct Failure {
+    /// The seed.
+    pub seed: u64,
+    /// When, in emulated time, with all steps.
+    pub at: Instant,
+    /// What, with the steps that are left.
+    pub what: String,
+    /// The models of the drives.
+    pub models: Vec<String>,
+    /// The steps that it takes.
+    pub steps: Vec<String>,
+}
+
+impl Options {
+    /// Drives of all embedded models, and 60 things that happen.
+    pub fn builtin() -> Self {
+        let load = |it: Builtin| it.load(&Choices::new()).expect("an embedded model is good");
+        let models = Builtin::all().map(load).map(Arc::new).collect();
+        Self { models, steps: 60, plant: None }
+    }
+}
+
+impl Failure {
+    fn text(&self) -> String {
+        let Self { seed, at, what, models, steps } = self;
+        let steps: String = steps.iter().map(|step| format!("\n  {step}")).collect();
+        let models = models.join(", ");
+        format!("{SEED}={seed}: {what} (at {at} of the whole storm)\non a line of {models}{steps}")
+    }
+}
+
+/// The seeds 0 to `count`, or that of the environment variable `STORM_SEED` alone.
+///
+/// # Panics
+/// If the variable holds no number.
+pub fn seeds(count: u64) -> impl Iterator<Item = u64> {
+    let only = std::env::var(SEED).ok();
+    let only = only.map(|text| text.parse::<u64>().expect("STORM_SEED is a number"));
+    let all = only.map_or(0..count, |seed| seed..seed.saturating_add(1));
+    all.into_iter()
+}
+
+/// Weathers the storm with this seed.
+///
+/// # Errors
+/// If something was not as it must be.
+pub fn run(seed: u64, options: &Options) -> Result<Report, Failure> {
+    let dice = |part: &str, n: u64| Dice(Fork::new(seed, "storm", part).stream(n));
+    let world = World::draw(seed, &options.models, &mut dice("world", 0));
+    let steps = step::draw(&world, options.steps, |n| dice("step", n));
+    let models: Vec<_> = world.line.devices.iter().map(|it| it.model.name.clone()).collect();
+    let plays = |steps: &[Step]| both(&world, steps, dice("looks", 0), options.plant);
+    match plays(&steps) {
+        Ok(Played { sent, events }) => Ok(Report { models, sent, events }),
+        Err((at, _)) => {
+            let steps = shrink(steps, |steps| plays(steps).is_err());
+            let what = plays(&steps).err().map(|(_, what)| what).unwrap_or_default();
+            let steps = steps.iter().map(Step::to_string).collect();
+            Err(Failure { seed, at, what, models, steps })
+        }
+    }
+}
+
+/// Plays it closely and again with few looks, which must be the same.
+fn both(
+    world: &World,
+    steps: &[Step],
+    dice: Dice,
+    plant: Option<Plant>,
+) -> Result<Played, (Instant, String)> {
+    let closely = play(world, steps, Looks::Closely, plant)?;
+    let mut seldom = play(world, steps, Looks::Seldom(dice), None)?;
+    if plant == Some(Plant::LosesEvent) {
+        seldom.events.pop();
+    }
+    if closely == seldom {
+        return Ok(closely);
+    }
+    let pairs = closely.events.iter().zip(&seldom.events);
+    let differ = pairs.into_iter().find(|(a, b)| a != b);
+    let at = differ.map_or(Instant::ZERO, |(a, _)| a.at);
+    let what = match differ {
+        Some((a, b)) => format!("who looks often sees {a:?}, who looks seldom {b:?}"),
+        None => "who looks seldom gets other bytes or misses the end".into(),
+    };
+    Err((at, what))
+}
+
+/// Leaves out what can be, as long as it `fails`: halves first, then less and less.
+fn shrink(mut steps: Vec<Step>, fails: impl Fn(&[Step]) -> bool) -> Vec<Step> {
+    let mut size = steps.len() / 2;
+    while size > 0 {
+        let mut from = 0;
+        while from < steps.len() {
+            let mut fewer = steps.clone();
+            fewer.drain(from..steps.len().min(from + size));
+            match fails(&fewer) {
+                true => steps = fewer,
+                false => from += size,
+            }
+        }
+        size /= 2;
+    }
+    steps
+}

@@ -1,0 +1,308 @@
+//! Plays the steps of a storm on a bus, either closely, with every call held against what must be true, or by
+//! looking only now and then.
+
+use super::Plant;
+use super::axes::Axis;
+use super::dice::Dice;
+use super::replies::{Context, Replies, Seen, framed};
+use super::rows;
+use super::step::{Step, Way};
+use super::world::World;
+use crate::bank::Bank;
+use crate::bench::WireSpec;
+use crate::bus::{Bus, Command, LinkId, Output};
+use crate::event::{DriveId, Event, What};
+use crate::model::Located;
+use crate::time::{Duration, Instant};
+use crate::wire::Coding;
+use crate::wire::function::{EXCEPTION, READ, WRITE_MANY};
+
+/// How often somebody looks.
+#[derive(Debug, Clone)]
+pub enum Looks {
+    /// At each instant at which something happens, and then everything is checked.
+    Closely,
+    /// Now and then, as the dice fall.
+    Seldom(Dice),
+}
+
+/// What came of it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Played {
+    /// Every byte that left, in order.
+    pub sent: Vec<u8>,
+    /// Everything that happened.
+    pub events: Vec<Event>,
+}
+
+/// Plays `steps` in `world`.
+///
+/// # Errors
+/// When something was not as it must be, and what.
+pub fn play(
+    world: &World,
+    steps: &[Step],
+    looks: Looks,
+    plant: Option<Plant>,
+) -> Result<Played, (Instant, String)> {
+    let mut player = Player::new(world, looks, plant);
+    for step in steps {
+        player.step(step).map_err(|what| (player.now, format!("{step}: {what}")))?;
+    }
+    Ok(player.played)
+}
+
+struct Player<'a> {
+    world: &'a World,
+    bus: Bus,
+    link: LinkId,
+    wire: WireSpec,
+    now: Instant,
+    looks: Looks,
+    plant: Option<Plant>,
+    replies: Replies,
+    axes: Vec<Axis>,
+    played: Played,
+}
+
+/// How things stood before a call.
+struct Before {
+    at: Instant,
+    banks: Vec<Bank>,
+    units: Vec<Option<DriveId>>,
+    coding: Coding,
+}
+
+impl<'a> Player<'a> {
+    fn new(world: &'a World, looks: Looks, plant: Option<Plant>) -> Self {
+        let (mut bus, wire) = (world.bus(), world.line.wire);
+        let link = bus.open(world.framing(wire));
+        let axes = bus.drives().map(|(_, drive)| Axis::of(drive)).collect();
+        let (replies, played) = (Replies::default(), Played::default());
+        Self { world, bus, link, wire, now: Instant::ZERO, looks, plant, replies, axes, played }
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), String> {
+        match step {
+            Step::Wait(by) => self.wait(*by),
+            Step::Ask { unit, pdu, way } => self.ask(*unit, pdu, *way),
+            Step::Noise(bytes) => {
+                self.receive(bytes)?;
+                if self.world.is_tcp() {
+                    self.hang_up();
+                }
+                Ok(())
+            }
+            Step::Listen => self.listen(),
+            Step::Do(command) => self.command(command.clone()),
+            Step::Fault(spec) => {
+                let taken: Vec<_> = self.bus.faults().names().collect();
+                // A rule that can do nothing here is refused, and nothing has happened then.
+                let weather = self.world.line.fault(spec, &taken).unwrap_or_default();
+                let mut rules = weather.rules.into_iter();
+                rules.try_for_each(|rule| self.command(Command::AddFault(rule)))
+            }
+            Step::NoFault(name) => self.command(Command::RemoveFault(name.clone())),
+        }
+    }
+
+    fn ask(&mut self, unit: u8, pdu: &[u8], way: Way) -> Result<(), String> {
+        let mut frame = framed(self.coding(), unit, pdu).to_vec();
+        let (at, pause) = match way {
+            Way::Whole => (frame.len(), Duration::ZERO),
+            Way::Cut(at) if !self.world.is_tcp() => {
+                frame.truncate(at.min(frame.len()));
+                (frame.len(), Duration::ZERO)
+            }
+            Way::Cut(at) => (at.min(frame.len()), Duration::ZERO),
+            Way::Pieces(at, pause) => (at.min(frame.len()), pause),
+            Way::Flipped(bit) => {
+                let bits = if self.coding() == Coding::Ascii { 7 } else { 8 };
+                let at = bit / 8 % frame.len();
+                frame[at] ^= u8::from(!self.world.is_tcp()) << (bit % bits);
+                (frame.len(), Duration::ZERO)
+            }
+        };
+        let (first, second) = frame.split_at(at);
+        self.receive(first)?;
+        if second.is_empty() {
+            return Ok(());
+        }
+        self.wait(pause)?;
+        self.receive(second)
+    }
+
+    /// Once the line is silent, whoever answers to a unit hears what it is asked.
+    fn listen(&mut self) -> Result<(), String> {
+        self.fall_silent()?;
+        for unit in 1..=u8::MAX {
+            let Some(id) = self.bus.find(unit) else { continue };
+            let Some(row) = self.bus.drive(id).model().showcase() else { continue };
+            let [high, low] = row.at.to_be_bytes();
+            let read = [READ, high, low, 0, row.kind.words() as u8];
+            let first = self.played.events.len();
+            self.ask(unit, &read, Way::Whole)?;
+            self.fall_silent()?;
+            let heard = |event: &Event| match event.what {
+                What::Transaction(it) => it.unit == unit && it.request[..] == read,
+                What::Fault { unit: struck, .. } => struck == unit,
+                _ => false,
+            };
+            if !self.played.events[first..].iter().any(heard) {
+                return Err(format!("unit {unit} does not hear a clean read"));
+            }
+        }
+        Ok(())
+    }
+
+    fn fall_silent(&mut self) -> Result<(), String> {
+        while let Some(at) = self.bus.silence_at(self.link) {
+            self.wait(at.since(self.now))?;
+        }
+        Ok(())
+    }
+
+    /// The client goes, and comes back at once.
+    fn hang_up(&mut self) {
+        self.bus.close(self.link);
+        self.replies.hang_up();
+        self.link = self.bus.open(self.world.framing(self.wire));
+    }
+
+    fn command(&mut self, command: Command) -> Result<(), String> {
+        let now = self.now;
+        // Not every drive has that terminal or alarm, and not every rule is there.
+        self.call(Some(&command), |bus| drop(bus.command(now, command.clone())))
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let (now, link) = (self.now, self.link);
+        self.call(None, |bus| bus.receive(now, link, bytes))
+    }
+
+    fn wait(&mut self, by: Duration) -> Result<(), String> {
+        let end = self.now + by;
+        loop {
+            let next = match &mut self.looks {
+                Looks::Closely => self.bus.poll_at().map(|wake| wake.at),
+                Looks::Seldom(dice) => dice.one_in(3).then(|| {
+                    let left = end.since(self.now).as_nanos() as u64;
+                    self.now + Duration::from_nanos(dice.between(0, left))
+                }),
+            };
+            let at = next.filter(|at| *at < end).unwrap_or(end);
+            self.now = at;
+            self.call(None, |bus| bus.advance_to(at))?;
+            if at == end {
+                return Ok(());
+            }
+        }
+    }
+
+    fn coding(&self) -> Coding {
+        match (self.world.is_tcp(), self.wire.mode.ascii) {
+            (true, _) => Coding::Mbap,
+            (false, true) => Coding::Ascii,
+            (false, false) => Coding::Rtu,
+        }
+    }
+
+    /// Does `act` to the bus and takes all that comes of it.
+    fn call(
+        &mut self,
+        command: Option<&Command>,
+        act: impl FnOnce(&mut Bus),
+    ) -> Result<(), String> {
+        if matches!(self.looks, Looks::Seldom(_)) {
+            act(&mut self.bus);
+            self.drain();
+            return Ok(());
+        }
+        let mut before = self.before();
+        act(&mut self.bus);
+        let mut seen = self.drain();
+        self.spoil(&mut seen, &mut before);
+        self.bus.catch_up();
+        self.check(&seen, &before, command)
+    }
+
+    fn before(&self) -> Before {
+        let banks = self.bus.drives().map(|(_, drive)| drive.bank().clone()).collect();
+        let units = (0..=u8::MAX).map(|unit| self.bus.find(unit)).collect();
+        Before { at: self.bus.now(), banks, units, coding: self.coding() }
+    }
+
+    fn drain(&mut self) -> Vec<Seen> {
+        let mut seen = Vec::new();
+        while let Some(output) = self.bus.poll_output() {
+            match output {
+                Output::Transmit { frame, .. } => {
+                    self.played.sent.extend_from_slice(&frame);
+                    seen.push(Seen::Frame(frame));
+                }
+                Output::Event(event) => {
+                    self.played.events.push(event);
+                    seen.push(Seen::Told(event.what));
+                }
+                Output::Moved(mode) => {
+                    self.wire.mode = mode;
+                    self.bus.reframe_all(self.world.framing(self.wire));
+                }
+                Output::Close(_) => self.hang_up(),
+                Output::Keep(_) => {}
+            }
+        }
+        seen
+    }
+
+    fn check(
+        &mut self,
+        seen: &[Seen],
+        before: &Before,
+        command: Option<&Command>,
+    ) -> Result<(), String> {
+        let answers = |unit: u8| before.units[usize::from(unit)];
+        self.replies.check(seen, &Context { coding: before.coding, answers: &answers })?;
+        let drives: Vec<_> = self.bus.drives().map(|(_, drive)| drive).collect();
+        let idle = command.is_none() && !rows::may_change(seen);
+        if idle && drives.iter().zip(&before.banks).any(|(drive, bank)| drive.bank() != bank) {
+            return Err("a row has changed, and nobody has written it".into());
+        }
+        rows::written(seen, &self.bus)?;
+        let time = self.bus.now().since(before.at);
+        for (i, drive) in drives.into_iter().enumerate() {
+            let mut now = Axis::of(drive);
+            now.came_from(&self.axes[i], time, drive)
+                .map_err(|what| format!("the axis of drive {i} {what}"))?;
+            now.keep_finest(&self.axes[i]);
+            self.axes[i] = now;
+        }
+        match self.bus.poll_at().filter(|wake| wake.at <= self.bus.now()) {
+            Some(wake) => Err(format!("{:?} is overdue", wake.reason)),
+            None => Ok(()),
+        }
+    }
+
+    /// The bug that was planted, if there is one.
+    fn spoil(&self, seen: &mut Vec<Seen>, before: &mut Before) {
+        let answered = seen.windows(2).enumerate().find_map(|(i, it)| match it {
+            [Seen::Frame(frame), Seen::Told(What::Transaction(told))] => Some((i, *frame, *told)),
+            _ => None,
+        });
+        let Some((i, frame, told)) = answered else { return };
+        let refused = told.answer[0] & EXCEPTION != 0;
+        match self.plant {
+            Some(Plant::AnswersTwice) if refused => seen.insert(i, Seen::Frame(frame)),
+            Some(Plant::WritesHalf) if refused && told.request[0] == WRITE_MANY => {
+                let at = u16::from_be_bytes([told.request[1], told.request[2]]);
+                let (drive, was) = (usize::from(told.drive.0), &mut before.banks);
+                if let Located::Word { row, .. } = self.bus.drive(told.drive).model().map.locate(at)
+                {
+                    let other = !was[drive].raw(row);
+                    was[drive].set(row, other);
+                }
+            }
+            _ => {}
+        }
+    }
+}
