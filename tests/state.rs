@@ -2,11 +2,12 @@
 
 use crate::kit::{Files, MODELS, again, bench_line, drain, rig, rig_of};
 use drivemu::bench::{self, DeviceSpec, Saved};
-use drivemu::bus::Output;
-use drivemu::event::{Change, What};
+use drivemu::bus::{Command, Output};
+use drivemu::event::{Change, DriveId, What};
 use drivemu::testkit::{Rig, hex};
 use drivemu::time::{Duration, Instant};
 use drivemu::wire::rtu;
+use drivemu::words::AlarmCause;
 
 const ACME: &str = include_str!("models/acme-s1.yaml");
 
@@ -144,6 +145,18 @@ fn the_factory_values_return_and_the_wear_stays() {
         state.contains("saves: 1") && state.contains("P001: {value: 50, writes: 1}"),
         "{state}"
     );
+}
+
+/// Alarms of the past are written by the drive, and no row that a master writes; they are kept all the same.
+#[test]
+fn alarms_of_the_past_are_read_back() {
+    let mut first = rig("k-series", &[], &DeviceSpec::default());
+    let (drive, cause) = (DriveId(0), AlarmCause::Overload);
+    first.command(Command::Raise { drive, cause }).expect("an alarm of the model");
+    let next = rig("k-series", &[], &DeviceSpec::default());
+    let mut second = next.with_state(&first.state()).expect("its own state");
+    assert_eq!(read(&mut second, "04 00"), read(&mut first, "04 00"));
+    assert_ne!(read(&mut second, "04 00"), "00 00");
 }
 
 #[test]
