@@ -2,7 +2,7 @@
 //!
 //! Nothing ticks. A [`Trajectory`] is a few pieces of constant acceleration; its state at an instant is
 //! a pure function of the two, so it does not matter how often anybody looks. What happens on the way
-//! (switch edges, index pulses, hard stops, speed thresholds, deviation limits) is solved for.
+//! (switch edges, index pulses, hard stops) is solved for.
 //!
 //! Units: counts, counts per second, counts per second squared; all signed along the machine's own
 //! coordinate. An acceleration that is zero, infinite or not a number means *at once*: that is what a
