@@ -171,10 +171,10 @@ impl Bus {
             }
             Command::Power { on: true, .. } if drive.is_powered() => {}
             Command::Power { on: true, .. } | Command::PowerCycle { .. } => {
-                self.power_cycle(self.devices[usize::from(id.0)]);
+                self.switch(id, Drive::power_cycle);
             }
             Command::Power { on: false, .. } => {
-                self.power_off(self.devices[usize::from(id.0)]);
+                self.switch(id, Drive::power_off);
             }
             // These are not for a drive and were carried out above.
             Command::AddFault(_)

@@ -297,7 +297,7 @@ impl Bus {
     fn after_drive(&mut self, id: DriveId) {
         self.keep(id);
         if self.drives[usize::from(id.0)].take_restart() {
-            self.power_cycle(self.devices[usize::from(id.0)]);
+            self.switch(id, Drive::power_cycle);
         }
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
@@ -315,21 +315,12 @@ impl Bus {
         self.agenda.set(id, self.drives[usize::from(id.0)].deadline());
     }
 
-    /// Power off and on for all stations of `device`.
-    fn power_cycle(&mut self, device: u16) {
+    /// Switches all stations of `id`'s device: they share their power.
+    fn switch(&mut self, id: DriveId, power: impl Fn(&mut Drive, Instant)) {
+        let device = self.devices[usize::from(id.0)];
         for i in 0..self.drives.len() {
             if self.devices[i] == device {
-                self.drives[i].power_cycle(self.now);
-                self.after_drive(DriveId(i as u16));
-            }
-        }
-    }
-
-    /// Power off for all stations of `device`.
-    fn power_off(&mut self, device: u16) {
-        for i in 0..self.drives.len() {
-            if self.devices[i] == device {
-                self.drives[i].power_off(self.now);
+                power(&mut self.drives[i], self.now);
                 self.after_drive(DriveId(i as u16));
             }
         }

@@ -168,7 +168,7 @@ impl Drive {
     fn is_claimed(&self, row: RowId, bit: u8) -> bool {
         let mut claims =
             self.model.wiring.claims.iter().filter(|it| (it.row, it.bit) == (row, bit));
-        claims.any(|claim| claim.is_made(self.bank.value(&self.model, claim.by)))
+        claims.any(|claim| claim.by.of(self.bank.value(&self.model, claim.by.row)) != 0)
     }
 
     fn normally_closed<S>(&self, terminals: &Terminals<S>) -> u32 {

@@ -28,7 +28,7 @@ pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments
 pub(super) use used::check_inert;
 
 use super::RowId;
-use super::line::{Coded, code_in};
+use super::line::Coded;
 use crate::time::Duration;
 use crate::units::Unit;
 use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Threshold};
@@ -158,17 +158,8 @@ pub struct Claim {
     pub row: RowId,
     /// The bit.
     pub bit: u8,
-    /// The row with the setting.
-    pub by: RowId,
-    /// Which hex digit of it, from the right; `None` is the whole value.
-    pub digit: Option<u8>,
-}
-
-impl Claim {
-    /// Is it made, where the setting's row holds `value`?
-    pub fn is_made(&self, value: i64) -> bool {
-        code_in(value, self.digit) != 0
-    }
+    /// The setting: it is made while this is not 0.
+    pub by: Digit,
 }
 
 /// Input words that a master writes in place of terminals.

@@ -1,6 +1,6 @@
 //! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
 
-use super::{RawChosen, RawSegments};
+use super::{RawChosen, RawDigit, RawSegments};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -33,22 +33,12 @@ pub struct RawInputs {
     pub words: Option<RawInputWords>,
     /// Rows whose bits are signals: row -> bit -> signal.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
-    /// Settings that take the signals of such bits away: row -> bit -> setting.
-    pub claims: BTreeMap<String, BTreeMap<u8, RawClaim>>,
+    /// Settings that take the signals of such bits away: row -> bit -> setting. While that is not 0, the bit does not act.
+    pub claims: BTreeMap<String, BTreeMap<u8, RawDigit>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
     pub commands: BTreeMap<String, BTreeMap<i64, String>>,
     /// Rows in which writing a 1 to a bit triggers an action. Every write triggers.
     pub triggers: BTreeMap<String, RawTriggers>,
-}
-
-/// A setting that takes the signal of a bit away. While it is not 0, the bit does not act.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawClaim {
-    /// The row with the setting.
-    pub register: String,
-    /// Which hex digit of it, counted from the right, from 0; default: the whole value.
-    pub digit: Option<u8>,
 }
 
 /// A row whose bits trigger actions.

@@ -2,9 +2,9 @@
 
 use super::compile::Wirer;
 use crate::model::RowId;
-use crate::model::line::{Coded, code_in, coded};
+use crate::model::line::{Coded, code_in, coded, has_digit};
 use crate::model::raw::{RawChoice, RawChosen, RawDigit};
-use crate::problem::{At, Path, Problem};
+use crate::problem::Path;
 use crate::words::Word;
 use std::collections::BTreeMap;
 
@@ -89,12 +89,8 @@ impl Wirer<'_> {
     }
 
     pub(super) fn digit(&mut self, raw: &RawDigit, path: &Path) -> Option<Digit> {
+        has_digit(raw.digit, path, self.problems);
         let row = self.row(&raw.register, &path.key("register"))?;
-        if raw.digit.is_some_and(|digit| digit > 3) {
-            let what = "a word has hex digits 0 to 3, counted from the right";
-            self.problems
-                .push(Problem { at: At::Value, ..Problem::value(path.key("digit"), what) });
-        }
         Some(Digit { row, digit: raw.digit })
     }
 }

@@ -2,7 +2,6 @@
 
 use super::compile::Wirer;
 use super::{Claim, Reaction};
-use crate::model::line::has_digit;
 use crate::model::raw::RawInputs;
 use crate::problem::{At, Path, Problem};
 
@@ -18,11 +17,9 @@ impl Wirer<'_> {
                     let what = format!("bit {bit} of {register} carries no signal to be taken");
                     self.problems.push(Problem::key(path.clone(), what).advise("leave it out"));
                 }
-                has_digit(claim.digit, &path, self.problems);
-                let path = path.key("register");
-                let Some(by) = self.row(&claim.register, &path) else { continue };
-                self.react(by, Reaction::Inputs, &path, At::Value);
-                self.wiring.claims.push(Claim { row, bit: *bit, by, digit: claim.digit });
+                let Some(by) = self.digit(claim, &path) else { continue };
+                self.react(by.row, Reaction::Inputs, &path.key("register"), At::Value);
+                self.wiring.claims.push(Claim { row, bit: *bit, by });
             }
         }
     }
