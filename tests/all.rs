@@ -10,6 +10,8 @@ mod homing;
 mod kit;
 mod ladder;
 mod line;
+#[cfg(feature = "cli")]
+mod live;
 mod problems;
 mod properties;
 mod scenario;

@@ -8,13 +8,20 @@ use crate::time::{Duration, Instant};
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     start: tokio::time::Instant,
+    /// The emulated time then.
+    from: Instant,
     rate: f64,
 }
 
 impl Clock {
     /// Starts now, with `rate` emulated seconds for each second of the wall.
     pub fn start(rate: f64) -> Self {
-        Self { start: wall_now(), rate }
+        Self::start_at(Instant::ZERO, rate)
+    }
+
+    /// The same, for an emulated world in which it is `from` already.
+    pub fn start_at(from: Instant, rate: f64) -> Self {
+        Self { start: wall_now(), from, rate }
     }
 
     /// Emulated seconds for each second of the wall.
@@ -24,7 +31,7 @@ impl Clock {
 
     /// The emulated time.
     pub fn now(&self) -> Instant {
-        Instant::ZERO + wall_now().duration_since(self.start).mul_f64(self.rate)
+        self.from + wall_now().duration_since(self.start).mul_f64(self.rate)
     }
 
     /// Sleeps until the emulated time is `at`; for ever without one.
@@ -32,7 +39,7 @@ impl Clock {
     /// It may wake a little early or late: whoever sleeps asks [`Clock::now`] again.
     pub async fn until(&self, at: Option<Instant>) {
         let Some(at) = at else { return std::future::pending().await };
-        let elapsed = at.since(Instant::ZERO).div_f64(self.rate);
+        let elapsed = at.since(self.from).div_f64(self.rate);
         match self.start.checked_add(elapsed) {
             Some(wall) => tokio::time::sleep_until(wall).await,
             None => std::future::pending().await,

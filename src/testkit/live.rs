@@ -1,7 +1,8 @@
 //! A drive behind an async byte stream, for tests of master libraries in the same process.
 //!
-//! The drive's time is tokio's: under `#[tokio::test(start_paused = true)]` a five-second watchdog takes no
-//! time at all.
+//! What is served is the rig as it is by then: values, motions under way, alarms, faults and how often they have acted,
+//! the scenario as far as it has come. Its time goes on from there, and is tokio's: under
+//! `#[tokio::test(start_paused = true)]` a five-second watchdog takes no time at all.
 //!
 //! ```
 //! use drivemu::model::builtin::Builtin;
@@ -28,21 +29,24 @@
 //! ```
 
 use super::Rig;
-use crate::shell::{Clock, Frames, Logger, Served, serve_stream};
+use super::rig::InUse;
+use crate::shell::{Clock, Frames, Logger, Served, Stage, serve_stream};
 use std::future::Future;
 use std::io;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use tokio::io::DuplexStream;
+use tokio::sync::Notify;
 
-/// A stream to put a master on, and the future that serves the drives of `rig` at its other end. Run the
-/// future beside the master (`tokio::spawn`, `try_join!`); it ends when the stream is dropped.
+/// A stream to put a master on, in place of the one that asked `rig` until now, and the future that serves its drives
+/// at the other end. Run the future beside the master (`tokio::spawn`, `try_join!`): the rig's time goes on when it is
+/// first polled, and it ends when the stream is dropped.
 pub fn stream(rig: Rig) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
     served(rig, None)
 }
 
-/// The same, with the event log in the file at `log`, one JSON object a line. It is whole when the future has
-/// ended.
+/// The same, with the event log in the file at `log`, one JSON object a line, from the beginning of the rig's time. It
+/// is whole when the future has ended.
 ///
 /// # Errors
 /// If the file can't be created.
@@ -59,12 +63,16 @@ fn served(
     logger: Option<Logger>,
 ) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
     let (master, drive) = tokio::io::duplex(4096);
-    let (bus, frames) = (rig.fresh_bus(), Frames::Serial(rig.wire()));
+    let InUse { name, wire, bus, director, link, now, events } = rig.into_served();
+    let log = logger.map(|mut logger| {
+        events.iter().for_each(|event| logger.log(event, &name, &bus));
+        Arc::new(Mutex::new(logger))
+    });
+    let stage = director.map(|it| Stage::new(it, Arc::new(Notify::new())));
     let serve = async move {
-        let (clock, log) = (Clock::start(1.0), logger.map(|it| Arc::new(Mutex::new(it))));
-        let line =
-            Served { name: "line".into(), bus, clock, frames, log, store: None, stage: None };
-        serve_stream(line, drive).await
+        let (clock, frames) = (Clock::start_at(now, 1.0), Frames::Serial(wire));
+        serve_stream(Served { name, bus, clock, frames, log, store: None, stage }, link, drive)
+            .await
     };
     (master, serve)
 }

@@ -17,17 +17,36 @@ use crate::wire::{crc16, rtu};
 use std::sync::Arc;
 
 /// One line with drives under a virtual clock.
+///
+/// It is set up first (`with_...`), each time on a line that is switched on anew; then it is used.
 #[derive(Debug)]
 pub struct Rig {
     line: BenchLine,
     framing: Framing,
     seed: u64,
+    /// The scenario as it was before its first step.
+    scenario: Option<Director>,
+    /// Something has happened to it since it was switched on: it can't be set up any more.
+    used: bool,
     bus: Bus,
     director: Option<Director>,
     link: LinkId,
     now: Instant,
     events: Vec<Event>,
     log: Vec<String>,
+}
+
+/// A rig in the hands of somebody who serves it.
+#[cfg(feature = "cli")]
+#[derive(Debug)]
+pub(super) struct InUse {
+    pub(super) name: String,
+    pub(super) wire: WireSpec,
+    pub(super) bus: Bus,
+    pub(super) director: Option<Director>,
+    pub(super) link: LinkId,
+    pub(super) now: Instant,
+    pub(super) events: Vec<Event>,
 }
 
 impl Rig {
@@ -67,35 +86,41 @@ impl Rig {
     pub fn bench(text: &str, library: &dyn Library) -> Result<Self, Vec<Problem>> {
         let Bench { seed, lines } = crate::bench::parse(text, library)?;
         let line = lines.into_iter().next().expect("a bench that was read has a line");
-        let framing = line.wire.framing(1.0);
-        Ok(Self::framed(line, framing, seed.unwrap_or(0)))
+        Ok(Self { seed: seed.unwrap_or(0), ..Self::off(line) }.switched_on())
     }
 
     /// A line as a bench describes it, with its framing, initialised.
     pub fn line(line: BenchLine) -> Self {
-        let framing = line.wire.framing(1.0);
-        Self::framed(line, framing, 0)
+        Self::off(line).switched_on()
     }
 
-    /// The same line with another framing. Its clock starts anew.
+    /// The same line with another framing.
+    ///
+    /// # Panics
+    /// If the rig is in use.
     #[must_use]
-    pub fn with_framing(self, framing: Framing) -> Self {
-        Self::framed(self.line, framing, self.seed)
+    pub fn with_framing(mut self, framing: Framing) -> Self {
+        self.must_be_new("with_framing");
+        self.framing = framing;
+        self.switched_on()
     }
 
-    /// The same line switched on anew, with what its drives or those of another rig have kept: the text of
-    /// [`state`](Self::state), or of a state file. Start values win over it, and on a line of a bench so do its
-    /// speed and format.
+    /// The same line with what the drives of another rig have kept: the text of [`state`](Self::state), or of a state
+    /// file. Start values win over it, and on a line of a bench so do its speed and format.
     ///
     /// # Errors
     /// Everything that is wrong with the text, or with these drives for it.
+    ///
+    /// # Panics
+    /// If the rig is in use.
     pub fn with_state(mut self, text: &str) -> Result<Self, Vec<Problem>> {
+        self.must_be_new("with_state");
         let mut saved = Saved::read(text)?;
         for (i, device) in self.line.devices.iter_mut().enumerate() {
             saved.give(&self.line.name, i, device);
         }
         saved.finish()?;
-        Ok(Self::line(self.line))
+        Ok(self.switched_on())
     }
 
     /// What the drives keep over power-off, as the text of a state file.
@@ -105,37 +130,54 @@ impl Rig {
         state.text()
     }
 
-    /// The same line with another seed; without one it is 0. Its clock starts anew.
+    /// The same line with another seed; without one it is 0.
+    ///
+    /// # Panics
+    /// If the rig is in use.
     #[must_use]
-    pub fn with_seed(self, seed: u64) -> Self {
-        Self::framed(self.line, self.framing, seed)
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.must_be_new("with_seed");
+        self.seed = seed;
+        self.switched_on()
     }
 
-    /// The same line with a fault rule more, in compact form (`lose_reply:every=10`). Its clock starts anew.
+    /// The same line with a fault rule more, in compact form (`lose_reply:every=10`). On a rig in use:
+    /// [`add_fault`](Self::add_fault).
     ///
     /// # Errors
     /// Everything that is wrong with the rule.
+    ///
+    /// # Panics
+    /// If the rig is in use.
     pub fn with_fault(mut self, spec: &str) -> Result<Self, Vec<Problem>> {
+        self.must_be_new("with_fault");
         self.line.add_fault(spec)?;
-        Ok(Self::framed(self.line, self.framing, self.seed))
+        Ok(self.switched_on())
     }
 
-    /// The same line with other habits. Its clock starts anew.
+    /// The same line with other habits. On a rig in use: [`Command::SetHabits`].
+    ///
+    /// # Panics
+    /// If the rig is in use.
     #[must_use]
     pub fn with_habits(mut self, habits: Habits) -> Self {
+        self.must_be_new("with_habits");
         self.line.habits = habits;
-        Self::framed(self.line, self.framing, self.seed)
+        self.switched_on()
     }
 
-    /// The same line switched on anew, with the steps that the scenario in `text` has for it. Whatever else is to be
-    /// changed about the line comes before that.
+    /// The same line with the steps that the scenario in `text` has for it.
     ///
     /// # Errors
-    /// Everything that is wrong with the scenario, or with this line for it.
-    pub fn with_scenario(self, text: &str) -> Result<Self, Vec<Problem>> {
+    /// Everything that is wrong with the scenario, or with this line for it as it is by now.
+    ///
+    /// # Panics
+    /// If the rig is in use.
+    pub fn with_scenario(mut self, text: &str) -> Result<Self, Vec<Problem>> {
+        self.must_be_new("with_scenario");
         let scenario = scenario::parse(text, std::slice::from_ref(&self.line))?;
-        let director = scenario.directors().next();
-        Ok(Self::directed(self.line, self.framing, self.seed, director))
+        self.scenario = scenario.directors().next();
+        Ok(self.switched_on())
     }
 
     /// What became of the steps of its scenario so far.
@@ -145,6 +187,7 @@ impl Rig {
 
     /// Ends the scenario: what has not come has failed.
     pub fn finish(&mut self) -> &[Verdict] {
+        self.used = true;
         if let Some(director) = &mut self.director {
             director.finish(self.now);
         }
@@ -152,19 +195,48 @@ impl Rig {
         self.verdicts()
     }
 
-    fn framed(line: BenchLine, framing: Framing, seed: u64) -> Self {
-        Self::directed(line, framing, seed, None)
+    /// A line that nobody has switched on.
+    fn off(line: BenchLine) -> Self {
+        let framing = line.wire.framing(1.0);
+        let mut bus = Bus::new();
+        let link = bus.open(framing);
+        Self {
+            line,
+            framing,
+            seed: 0,
+            scenario: None,
+            used: false,
+            bus,
+            director: None,
+            link,
+            now: Instant::ZERO,
+            events: Vec::new(),
+            log: Vec::new(),
+        }
     }
 
-    fn directed(line: BenchLine, framing: Framing, seed: u64, director: Option<Director>) -> Self {
-        let mut bus = line.bus(seed);
-        let link = bus.open(framing);
+    /// Switches it on, with all that it is set up with, at the beginning of time, and waits until it is ready.
+    fn switched_on(self) -> Self {
+        let (mut bus, director) = (self.fresh_bus(), self.scenario.clone());
+        let link = bus.open(self.framing);
         let (now, events, log) = (Instant::ZERO, Vec::new(), Vec::new());
-        let mut rig = Self { line, framing, seed, bus, director, link, now, events, log };
+        let mut rig = Self { bus, director, link, now, events, log, ..self };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
-        let ready = ready.max().unwrap_or_default();
-        rig.advance(ready);
+        rig.pass_time(ready.max().unwrap_or_default());
         rig
+    }
+
+    /// Whatever has happened to a rig in use would be lost when it is switched on anew.
+    fn must_be_new(&self, what: &str) {
+        assert!(!self.used, "`{what}` comes before the first use of a rig");
+    }
+
+    /// The line's name, its bus and the link that the test's master has, as they are by now; the steps to come; what
+    /// has happened.
+    #[cfg(feature = "cli")]
+    pub(super) fn into_served(self) -> InUse {
+        let Self { line, bus, director, link, now, events, .. } = self;
+        InUse { name: line.name, wire: line.wire, bus, director, link, now, events }
     }
 
     /// How the line is set.
@@ -172,7 +244,7 @@ impl Rig {
         self.line.wire
     }
 
-    /// The same drives on a bus of their own, just switched on.
+    /// The same drives on a bus of their own, just switched on, as if nothing had ever happened to this one.
     pub fn fresh_bus(&self) -> Bus {
         self.line.bus(self.seed)
     }
@@ -184,6 +256,11 @@ impl Rig {
 
     /// Lets time pass, and gives back what came meanwhile.
     pub fn advance(&mut self, by: Duration) -> Vec<u8> {
+        self.used = true;
+        self.pass_time(by)
+    }
+
+    fn pass_time(&mut self, by: Duration) -> Vec<u8> {
         self.now += by;
         self.pass();
         self.drain()
@@ -207,6 +284,7 @@ impl Rig {
 
     /// Puts `bytes` on the line, lets it fall silent where somebody waits for that, and gives back what came.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.used = true;
         self.bus.receive(self.now, self.link, bytes);
         let mut answer = self.drain();
         while let Some(at) = self.bus.silence_at(self.link) {
@@ -219,6 +297,7 @@ impl Rig {
 
     /// Puts `bytes` on the line and gives back what comes at once.
     pub fn push(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self.used = true;
         self.bus.receive(self.now, self.link, bytes);
         self.drain()
     }
@@ -244,6 +323,7 @@ impl Rig {
     /// # Errors
     /// If there is no such drive, terminal, alarm or rule.
     pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
+        self.used = true;
         let reply = self.bus.command(self.now, command);
         self.drain();
         reply.map(|_| ())

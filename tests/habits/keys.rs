@@ -66,6 +66,7 @@ fn habits_come_and_go() {
     let none = drivemu::bus::Command::SetHabits(Habits::default());
     rig.command(none).expect("done");
     assert_eq!(rig.send(&frame(READ)), frame(ANSWER));
+    let rig = crate::kit::rig("hcfa-x", &[], &Default::default());
     let mut rig = rig.with_habits(Habits { echo: true, ..Habits::default() });
     assert_eq!(rig.send(&frame(READ)), [frame(READ), frame(ANSWER)].concat());
 }

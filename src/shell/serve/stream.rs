@@ -1,18 +1,19 @@
 //! Serves a line on any async byte stream: an in-process pipe, for tests of master libraries.
 
 use super::{Send, Served};
+use crate::bus::LinkId;
 use std::io;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
 
-/// Serves `line` on `stream` until its other end is dropped.
+/// Serves `link` of `line` on `stream` until its other end is dropped.
 ///
 /// # Errors
 /// What the stream says.
 pub async fn serve_stream(
     mut line: Served,
+    link: LinkId,
     mut stream: impl AsyncRead + AsyncWrite + Unpin,
 ) -> io::Result<()> {
-    let link = line.bus.open(line.framing());
     let mut buffer = [0; 1024];
     loop {
         while let Some(send) = line.next_send() {
