@@ -404,6 +404,11 @@ pub enum Change {
         /// Why.
         why: Ignored,
     },
+    /// A function that is not simulated was asked for: it does nothing.
+    NotSimulated {
+        /// Its index among those of the model.
+        function: u8,
+    },
     /// Something is wrong with the device from now on, or no longer.
     Trouble {
         /// What.

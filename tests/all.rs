@@ -5,6 +5,7 @@ mod documents;
 mod expect;
 mod fault;
 mod frames;
+mod functions;
 mod habits;
 mod homing;
 mod kit;

@@ -122,6 +122,7 @@ fn card(model: &Model, id: RowId) -> String {
     );
     line("note", &row.note);
     line("assumed", &row.assumed);
+    line("does not", &not_simulated(model, id).join(", "));
     for window in model.map.windows().iter().filter(|window| window.base != 0) {
         if let Some(address) = row
             .at
@@ -159,7 +160,17 @@ fn object(model: &Model, id: RowId) -> Value {
         "note": row.note,
         "assumed": row.assumed,
         "wired_to": wired(model, id),
+        "not_simulated": not_simulated(model, id),
     })
+}
+
+/// Functions that can be asked for through the row and that nothing emulates.
+fn not_simulated(model: &Model, id: RowId) -> Vec<&str> {
+    let wiring = &model.wiring;
+    let has = |functions: &[RowId]| functions.contains(&id);
+    let input = wiring.input_terminals.as_ref().is_some_and(|it| has(&it.functions));
+    let output = wiring.output_terminals.as_ref().is_some_and(|it| has(&it.functions));
+    wiring.not_simulated.of_row(id, input, output)
 }
 
 /// What the row is wired to, or `None` if it moves nothing.

@@ -11,6 +11,7 @@ mod home;
 mod levels;
 mod memory;
 mod motion;
+mod not_simulated;
 mod react;
 mod segments;
 mod settings;
@@ -90,6 +91,8 @@ pub struct Drive {
     never_enabled: bool,
     /// What the position is called whenever power comes on: there is no absolute encoder.
     position_at_power_on: i64,
+    /// Functions that are not simulated and of which the log has told since power came on, as bits by index.
+    told_not_simulated: u64,
     changes: VecDeque<Change>,
     /// A master has asked for a restart of the whole device, which only the bus knows.
     restart: bool,
@@ -138,6 +141,7 @@ impl Drive {
             unit: 0,
             mode: None,
             position_at_power_on: setup.position,
+            told_not_simulated: 0,
             changes: VecDeque::with_capacity(8),
             restart: false,
             given: None,
@@ -345,6 +349,7 @@ impl Drive {
         self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
         self.motor = self.motor.switched_on(now, axis.coast, axis.position_gain);
         (self.home_done, self.never_enabled) = (false, true);
+        self.told_not_simulated = 0;
         (self.run, self.velocity, self.segment) = (None, None, 0);
         self.chain.end();
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);

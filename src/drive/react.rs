@@ -33,6 +33,7 @@ impl Drive {
         }
         // What was written may be a limit that the axis goes by.
         self.settle();
+        self.tell_not_simulated();
         // Commands act on what the same request has written, so they come last.
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {

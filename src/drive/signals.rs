@@ -28,6 +28,7 @@ impl Drive {
             self.home_by(HomeStarter::Input);
         }
         self.start_by_inputs(now.risen_since(before));
+        self.tell_not_simulated();
     }
 
     /// The output signals, right now.
@@ -128,40 +129,67 @@ impl Drive {
 
     pub(super) fn active_inputs(&self) -> Inputs {
         let wiring = &self.model.wiring;
-        let is_set = |row, bit: u16| self.bank.raw(row) >> bit & 1 != 0;
         let mut inputs = Inputs::default();
+        let mut insert = |signal| inputs.insert(signal);
         if let Some(terminals) = &wiring.input_terminals {
-            let active = self.active_terminals(terminals);
-            for (i, row) in terminals.functions.iter().enumerate() {
-                let signal = terminals.meaning(self.bank.raw(*row));
-                signal
-                    .filter(|_| active >> i & 1 != 0)
-                    .into_iter()
-                    .for_each(|it| inputs.insert(it));
-            }
+            self.active_codes(&terminals.codes, &mut insert);
         }
         for signal in &wiring.machine_inputs {
             if self.switch(*signal).is_some_and(|switch| self.is_switched(switch)) {
-                inputs.insert(*signal);
+                insert(*signal);
             }
         }
         if let Some(words) = &wiring.input_words {
-            for (position, signal) in &words.positions {
-                let (word, bit) = (usize::from(position / 16), position % 16);
-                let enabled = words.enabled_by.get(word).is_none_or(|row| is_set(*row, bit));
-                if enabled && is_set(words.rows[word], bit) {
-                    inputs.insert(*signal);
-                }
-            }
+            self.active_positions(&words.positions, &mut insert);
         }
-        for (row, bits) in &wiring.input_bits {
-            for (bit, signal) in bits {
-                if is_set(*row, u16::from(*bit)) && !self.is_claimed(*row, *bit) {
-                    inputs.insert(*signal);
-                }
-            }
-        }
+        self.active_bits(&wiring.input_bits, &mut insert);
         inputs
+    }
+
+    /// What active input terminals stand for, by their function numbers.
+    pub(super) fn active_codes<S: Copy>(&self, codes: &[(u16, S)], mut each: impl FnMut(S)) {
+        let Some(terminals) = &self.model.wiring.input_terminals else { return };
+        let active = self.active_terminals(terminals);
+        for (i, row) in terminals.functions.iter().enumerate() {
+            let number = self.bank.raw(*row);
+            let function = codes.iter().find(|(code, _)| u32::from(*code) == number);
+            function.filter(|_| active >> i & 1 != 0).into_iter().for_each(|(_, it)| each(*it));
+        }
+    }
+
+    /// What enabled bits of input words stand for, by their positions.
+    pub(super) fn active_positions<S: Copy>(
+        &self,
+        positions: &[(u16, S)],
+        mut each: impl FnMut(S),
+    ) {
+        let Some(words) = &self.model.wiring.input_words else { return };
+        for (position, it) in positions {
+            let (word, bit) = (usize::from(position / 16), position % 16);
+            let enabled = words.enabled_by.get(word).is_none_or(|row| self.is_set(*row, bit));
+            if enabled && self.is_set(words.rows[word], bit) {
+                each(*it);
+            }
+        }
+    }
+
+    /// What bits of rows stand for that nobody claims.
+    pub(super) fn active_bits<S: Copy>(
+        &self,
+        rows: &[(RowId, Vec<(u8, S)>)],
+        mut each: impl FnMut(S),
+    ) {
+        for (row, bits) in rows {
+            for (bit, it) in bits {
+                if self.is_set(*row, u16::from(*bit)) && !self.is_claimed(*row, *bit) {
+                    each(*it);
+                }
+            }
+        }
+    }
+
+    fn is_set(&self, row: RowId, bit: u16) -> bool {
+        self.bank.raw(row) >> bit & 1 != 0
     }
 
     /// Is the signal of this bit somebody else's?

@@ -234,6 +234,9 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::InputIgnored { input, why } => {
             ("input_ignored", json!({"input": input.name(), "why": why::ignored(*why)}))
         }
+        Change::NotSimulated { function } => {
+            ("not_simulated", json!({"function": rows::not_simulated(drive, *function)}))
+        }
         Change::Trouble { trouble, on } => {
             let more = match trouble {
                 Trouble::Cause(cause) => json!({"trouble": "cause", "cause": cause.name()}),

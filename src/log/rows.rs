@@ -50,6 +50,12 @@ pub fn terminal(drive: &Drive, index: u8) -> String {
     terminals.map(|it| it.name(usize::from(index))).unwrap_or_default()
 }
 
+/// What the model calls a function that is not simulated.
+pub fn not_simulated(drive: &Drive, function: u8) -> &str {
+    let labels = &drive.model().wiring.not_simulated.labels;
+    labels.get(usize::from(function)).map_or("", String::as_str)
+}
+
 /// The rows that the answer to a read carries.
 pub fn answer(drive: &Drive, span: Span, pdu: &[u8]) -> Vec<Item> {
     let word = |i: usize| {

@@ -264,6 +264,9 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::InputIgnored { input, why } => {
             format!("input {} ignored: {}", input.name(), why::ignored(*why))
         }
+        Change::NotSimulated { function } => {
+            format!("{}: not simulated", rows::not_simulated(drive, *function))
+        }
         Change::Trouble { trouble, on } => trouble_text(drive, *trouble, *on),
         Change::Bounces { index, times, every } => {
             let (name, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);

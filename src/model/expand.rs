@@ -117,6 +117,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
             see: area.see.clone(),
             values: BTreeMap::new(),
             bits: BTreeMap::new(),
+            not_simulated: BTreeMap::new(),
             note: None,
             assumed: area.assumed.clone(),
             sim: Some(RawSim::None),

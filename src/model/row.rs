@@ -46,6 +46,8 @@ pub struct Row {
     pub values: BTreeMap<i64, String>,
     /// What single bits mean.
     pub bits: BTreeMap<u8, String>,
+    /// Hex digits that ask for something which is not simulated, and for what.
+    pub not_simulated: BTreeMap<u8, String>,
     /// Remark.
     pub note: String,
     /// What was assumed, empty if nothing was.

@@ -127,6 +127,10 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         let what = format!("the row has no bit {bit}");
         problems.push(Problem::key(path.key("bits").key(bit), what));
     }
+    for digit in raw.not_simulated.keys().filter(|digit| u16::from(**digit) >= 4 * kind.words()) {
+        let what = format!("the row has no hex digit {digit}");
+        problems.push(Problem::key(path.key("not_simulated").key(digit), what));
+    }
     Row {
         id: id.clone(),
         at: raw.at,
@@ -156,6 +160,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         see: raw.see.clone(),
         values: raw.values.clone(),
         bits: raw.bits.clone(),
+        not_simulated: raw.not_simulated.clone(),
         note: raw.note.clone().unwrap_or_default(),
         assumed: raw.assumed.clone().unwrap_or_default(),
         inert: raw.sim.is_some(),
@@ -179,6 +184,7 @@ fn reject_keys_without_effect(
             ("clears", raw.clears),
             ("volatile", raw.volatile),
             ("autosave", raw.autosave),
+            ("not_simulated", !raw.not_simulated.is_empty()),
         ];
         for (key, _) in of_writes.into_iter().filter(|(_, set)| *set) {
             reject(key, "a row that is read only");

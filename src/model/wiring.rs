@@ -9,6 +9,7 @@ mod compile;
 mod homing;
 mod limits;
 mod names;
+mod not_simulated;
 mod orders;
 mod quantities;
 mod segment_rows;
@@ -24,6 +25,7 @@ pub use choice::{Choice, Digit};
 pub(super) use compile::compile;
 pub use homing::{Finish, Homing};
 pub use limits::Limits;
+pub use not_simulated::NotSimulated;
 pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments};
 pub(super) use used::check_inert;
 
@@ -60,6 +62,8 @@ pub struct Wiring {
     pub thresholds: Vec<(Threshold, Number)>,
     /// The row whose bits show as user-defined outputs.
     pub user_outputs: Option<RowId>,
+    /// Functions that nothing emulates.
+    pub not_simulated: NotSimulated,
     /// What a write to a row sets off, by row.
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.

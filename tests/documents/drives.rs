@@ -22,7 +22,9 @@ fn the_tables_of_each_drive_are_up_to_date() {
         let file: Value = serde_yaml::from_str(text_of(name)).expect("YAML");
         let (before, rest) = page.split_once(BEGIN).expect("a mark where the tables begin");
         let (_, after) = rest.split_once(END).expect("a mark where they end");
-        let tables = alarms(&model, &file["alarms"]) + &outputs(&model, &file["quantities"]);
+        let tables = alarms(&model, &file["alarms"])
+            + &outputs(&model, &file["quantities"])
+            + &not_simulated(&model);
         let page = format!("{before}{BEGIN}{tables}\n{END}{after}");
         bad.extend(same(&path, &page, "UPDATE_DOCS").err());
     }
@@ -97,6 +99,21 @@ fn outputs(model: &Model, numbers: &Value) -> String {
     }
     if !line.is_empty() {
         writeln!(out, "\nThey go by {line}.").expect("a string");
+    }
+    out
+}
+
+/// What the manual has and nothing emulates.
+fn not_simulated(model: &Model) -> String {
+    let labels = &model.wiring.not_simulated.labels;
+    if labels.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from(
+        "\n## Not simulated\n\nThese do nothing; the log says so when one is asked for first after power-on.\n\n",
+    );
+    for label in labels {
+        writeln!(out, "- {label}").expect("a string");
     }
     out
 }

@@ -227,6 +227,7 @@ pub const KEYS: &[&str] = &[
     "next",
     "no_steps",
     "normally_closed",
+    "not_simulated",
     "note",
     "of_origin",
     "on",

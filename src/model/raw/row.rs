@@ -53,6 +53,10 @@ pub struct RawRow {
     /// What single bits mean, from bit 0.
     #[serde(default)]
     pub bits: BTreeMap<u8, String>,
+    /// Hex digits, from the right, from 0, that ask for something which is not simulated while they are not 0; the log
+    /// says so with these words.
+    #[serde(default)]
+    pub not_simulated: BTreeMap<u8, String>,
     /// A remark for the reader.
     pub note: Option<String>,
     /// The manual is silent on something said here: what was assumed, and why.

@@ -23,7 +23,8 @@ pub struct RawSignals {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawInputs {
-    /// Function number -> input signal; used by `terminals` and `words`.
+    /// Function number -> input signal, or `not_simulated` and the manual's name of a function that does nothing; used by
+    /// `terminals` and `words`.
     pub codes: BTreeMap<u16, String>,
     /// Switches of the machine that reach the drive by a way of their own, not by one of `terminals`.
     pub machine: Vec<String>,
@@ -31,7 +32,7 @@ pub struct RawInputs {
     pub terminals: Option<RawTerminals>,
     /// Words in which bit n of word w stands for function number 16 w + n.
     pub words: Option<RawInputWords>,
-    /// Rows whose bits are signals: row -> bit -> signal.
+    /// Rows whose bits are signals: row -> bit -> signal, or `not_simulated` and the manual's name.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
     /// Settings that take the signals of such bits away: row -> bit -> setting. While that is not 0, the bit does not act.
     pub claims: BTreeMap<String, BTreeMap<u8, RawDigit>>,
@@ -57,7 +58,8 @@ pub struct RawTriggers {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawOutputs {
-    /// Function number -> output signal, or `not` and a signal; used by `terminals` and `words`.
+    /// Function number -> output signal, `not` and a signal, or `not_simulated` and the manual's name of a function that
+    /// never shows; used by `terminals` and `words`.
     pub codes: BTreeMap<u16, String>,
     /// Physical output terminals.
     pub terminals: Option<RawTerminals>,

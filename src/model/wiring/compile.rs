@@ -1,5 +1,6 @@
 //! Resolves the wiring of a file: names to rows, words to roles.
 
+use super::not_simulated::split;
 use super::{
     Alarm, AlarmStop, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals,
     Wiring,
@@ -30,6 +31,7 @@ pub(in crate::model) fn compile(
     let signals = Path::root().key("signals");
     wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
+    wirer.digits_not_simulated();
     wirer.thresholds_fit();
     wirer.line(&raw.line);
     wirer.servo(raw);
@@ -75,7 +77,8 @@ impl Wirer<'_> {
     }
 
     fn inputs(&mut self, raw: &RawInputs, path: &Path) {
-        let codes = self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| {
+        let prefix = prefix(raw.terminals.as_ref());
+        let codes = self.codes(&raw.codes, prefix, &path.key("codes"), |wirer, name, path| {
             wirer.word::<Input>(name, "input signal", path)
         });
         self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
@@ -91,7 +94,8 @@ impl Wirer<'_> {
         if let Some(raw) = &raw.terminals {
             let path = path.key("terminals");
             self.monitor(raw, &path, Shows::InputTerminals);
-            let terminals = self.terminals(raw, &path, codes.clone());
+            let signals = split(&codes, &mut self.wiring.not_simulated.input_codes);
+            let terminals = self.terminals(raw, &path, signals);
             for row in terminals.functions.clone().into_iter().chain(terminals.normally_closed) {
                 self.react(row, Reaction::Inputs, &path, At::Key);
             }
@@ -111,6 +115,7 @@ impl Wirer<'_> {
             let by_terminals = self.wiring.input_terminals.is_some();
             let words = raw.registers.len();
             let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
+            let positions = split(&positions, &mut self.wiring.not_simulated.input_positions);
             let hold = raw.hold.as_ref().and_then(|raw| self.hold(raw, &path.key("hold")));
             self.wiring.input_words = Some(InputWords { rows, enabled_by, positions, hold });
         }
@@ -118,14 +123,22 @@ impl Wirer<'_> {
             let path = path.key("bits").key(register);
             let Some(row) = self.row_key(register, &path) else { continue };
             self.writable(row, &path, At::Key);
-            let mut map = Vec::new();
+            let (mut map, mut absent) = (Vec::new(), Vec::new());
             for (bit, name) in bits {
                 let path = path.key(bit);
                 self.bit(*bit, row, &path);
-                map.extend(self.word::<Input>(name, "input signal", &path).map(|it| (*bit, it)));
+                let place = self.place_of_bit(row, *bit);
+                match self.not_simulated(name, &place, &path) {
+                    Some(index) => absent.push((*bit, index)),
+                    None => {
+                        let signal = self.word::<Input>(name, "input signal", &path);
+                        map.extend(signal.map(|it| (*bit, it)));
+                    }
+                }
             }
             self.react(row, Reaction::Inputs, &path, At::Key);
             self.wiring.input_bits.push((row, map));
+            self.wiring.not_simulated.input_bits.push((row, absent));
         }
         self.claims(raw, &path.key("claims"));
         self.commands(&raw.commands, &path.key("commands"));
@@ -133,13 +146,16 @@ impl Wirer<'_> {
     }
 
     fn outputs(&mut self, raw: &RawOutputs, path: &Path) {
-        let codes =
-            self.codes(&raw.codes, &path.key("codes"), |wirer, name, path| wirer.shown(name, path));
+        let prefix = prefix(raw.terminals.as_ref());
+        let codes = self.codes(&raw.codes, prefix, &path.key("codes"), |wirer, name, path| {
+            wirer.shown(name, path)
+        });
         self.codes_used(&raw.codes, raw.terminals.is_some() || raw.words.is_some(), path);
         if let Some(raw) = &raw.terminals {
             let path = path.key("terminals");
             self.monitor(raw, &path, Shows::OutputTerminals);
-            self.wiring.output_terminals = Some(self.terminals(raw, &path, codes.clone()));
+            let signals = split(&codes, &mut self.wiring.not_simulated.output_codes);
+            self.wiring.output_terminals = Some(self.terminals(raw, &path, signals));
         }
         if let Some(raw) = &raw.words {
             let path = path.key("words");
@@ -151,6 +167,7 @@ impl Wirer<'_> {
             let words = raw.registers.len();
             let by_terminals = self.wiring.output_terminals.is_some();
             let positions = self.positions(&codes, &raw.positions, words, by_terminals, &path);
+            let positions = split(&positions, &mut self.wiring.not_simulated.output_positions);
             self.wiring.output_words = Some(OutputWords { enabled_by, positions });
         }
         for (register, bits) in &raw.bits {
@@ -245,6 +262,11 @@ impl Wirer<'_> {
             self.wiring.alarms.extend(cause.map(|cause| Alarm { cause, code, resettable, stop }));
         }
     }
+}
+
+/// What the log writes before a function number.
+fn prefix(terminals: Option<&RawTerminals>) -> &str {
+    terminals.map_or("function", |it| it.prefix.as_str())
 }
 
 fn stop(raw: RawAlarmStop) -> AlarmStop {

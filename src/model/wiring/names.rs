@@ -1,6 +1,7 @@
 //! Names resolved, and the rules for what a row may be wired to.
 
 use super::compile::Wirer;
+use super::not_simulated::Function;
 use super::{Reaction, Shown, Shows};
 use crate::model::{Access, RowId, duration};
 use crate::problem::{At, Path, Problem, suggest};
@@ -39,14 +40,21 @@ impl Wirer<'_> {
         Some(Shown { signal, inverted })
     }
 
+    /// What function numbers stand for; `prefix` is what the log writes before those that are not simulated.
     pub(super) fn codes<S>(
         &mut self,
         raw: &BTreeMap<u16, String>,
+        prefix: &str,
         path: &Path,
         parse: fn(&mut Self, &str, &Path) -> Option<S>,
-    ) -> Vec<(u16, S)> {
+    ) -> Vec<(u16, Function<S>)> {
         let entry = |(code, name): (&u16, &String)| {
-            parse(self, name, &path.key(code)).map(|signal| (*code, signal))
+            let path = path.key(code);
+            let function = match self.not_simulated(name, &format!("{prefix} {code}"), &path) {
+                Some(index) => Function::NotSimulated(index),
+                None => Function::Signal(parse(self, name, &path)?),
+            };
+            Some((*code, function))
         };
         raw.iter().filter_map(entry).collect()
     }
