@@ -31,6 +31,7 @@
 //! event                 what happened
 //! words  serial         what models and behaviours both say | speed and format of a line
 //! time  units  wire  problem  rng                          what everyone may say
+//! text                  which characters a line of text may hold
 //! ```
 
 pub mod bank;
@@ -51,6 +52,7 @@ pub mod serial;
 #[cfg(feature = "cli")]
 pub mod shell;
 pub mod testkit;
+pub mod text;
 pub mod time;
 pub mod units;
 pub mod wire;

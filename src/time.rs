@@ -77,7 +77,8 @@ impl fmt::Display for Instant {
     }
 }
 
-/// Reads `200ms`, `5s`, `1.5s`, `20us` or `2min`; the unit is required.
+/// Reads `200ms`, `5s`, `1.5s`, `20us` or `2min`; the unit is required. What is not negative and fits is rounded to the
+/// nanosecond.
 pub fn parse_duration(text: &str) -> Option<Duration> {
     let text = text.trim();
     let split = text.find(|c: char| c.is_ascii_alphabetic())?;

@@ -67,7 +67,7 @@ impl Unit {
     /// Reads `rpm`, `0.1 rpm`, `100 ms`.
     pub fn parse(text: &str) -> Option<Self> {
         let (factor, symbol) = match text.split_once(' ') {
-            Some((number, symbol)) => (number.parse::<f64>().ok()?, symbol.trim()),
+            Some((number, symbol)) => (number.parse::<f64>().ok()?, symbol.trim_matches(' ')),
             None => (1.0, text),
         };
         // Beyond this no row of 32 bits holds anything that a machine can have.
@@ -97,14 +97,12 @@ impl Unit {
     }
 }
 
-/// Reads a whole number as people write it: `100`, `-4`, `0x0C`, `0CH`.
+/// Reads a whole number as people write it: `100`, `-4`, `0x0C`, `0CH`. Only a decimal number has a sign.
 pub fn parse_integer(text: &str) -> Option<i64> {
     let lower = text.to_ascii_lowercase();
-    if let Some(hex) = lower.strip_prefix("0x") {
-        return i64::from_str_radix(hex, 16).ok();
-    }
     // A trailing H, as manuals write it; the digits stand for themselves.
-    match lower.strip_suffix('h') {
+    match lower.strip_prefix("0x").or_else(|| lower.strip_suffix('h')) {
+        Some(hex) if hex.starts_with(['+', '-']) => None,
         Some(hex) => i64::from_str_radix(hex, 16).ok(),
         None => lower.parse().ok(),
     }
@@ -124,6 +122,17 @@ mod tests {
         for bad in ["", "rmp", "0 ms", "-1 s", "x ms", "1e999 s"] {
             assert_eq!(Unit::parse(bad), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn whole_numbers_as_people_write_them() {
+        for (text, want) in [("100", 100), ("-4", -4), ("0x0C", 12), ("0CH", 12), ("ah", 10)] {
+            assert_eq!(parse_integer(text), Some(want), "{text}");
+        }
+        for bad in ["", "h", "0x", "0x-5", "0x+5", "-5h", "1.5", "1e3", "NaN", "inf", "1 2"] {
+            assert_eq!(parse_integer(bad), None, "{bad}");
+        }
+        assert_eq!(parse_integer("9223372036854775808"), None, "beyond 64 bits");
     }
 
     #[test]

@@ -6,7 +6,8 @@ use drivemu::model::builtin::Builtin;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The floors, lowest first. A module may import from floors below its own, and from itself.
-const FLOORS: [&[&str]; 14] = [
+const FLOORS: [&[&str]; 15] = [
+    &["text"],
     &["time", "units", "wire", "problem", "rng"],
     &["words", "serial"],
     &["event"],

@@ -4,7 +4,7 @@
 use crate::kit::rig;
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Command, CommandError};
-use drivemu::event::{DriveId, Trouble};
+use drivemu::event::{DriveId, Outcome, Remark, Trouble};
 use drivemu::testkit::Rig;
 use drivemu::words::AlarmCause;
 use std::time::Duration;
@@ -88,9 +88,27 @@ fn what_can_not_be() {
         rig.command(Command::Bounce { drive: FIRST, index: 4, times: 1, every }),
         no_terminal
     );
+    let bounce = |times, every| Command::Bounce { drive: FIRST, index: 0, times, every };
+    let beyond = [(0, every), (3, Duration::ZERO), (3, Duration::from_nanos(999))];
+    for (times, every) in beyond.into_iter().chain([(3, Duration::from_secs(61))]) {
+        assert_eq!(rig.command(bounce(times, every)), Err(CommandError::NoBounce), "{every:?}");
+    }
     rig.command(Command::Power { drive: FIRST, on: false }).expect("it has power");
     let raise = Command::Raise { drive: FIRST, cause: AlarmCause::OverVoltage };
     assert_eq!(rig.command(raise), Err(CommandError::NoPower));
+}
+
+/// Names that come from a program instead of a file may hold anything; an event is one line all the same.
+#[test]
+fn an_event_is_one_line() {
+    let mut rig = drive("yako-closed-loop");
+    let step = "trip\n0.000 unit 1 ready\u{1b}[2J\u{202e}".to_owned();
+    let what = "a\rb\u{85}".to_owned();
+    rig.command(Command::Tell(Remark { step, outcome: Outcome::Failed, what })).expect("told");
+    let log = rig.log();
+    let last = log.lines().last().expect("a line");
+    let want = "step trip\\n0.000 unit 1 ready\\u{1b}[2J\\u{202e} failed: a\\rb\\u{85}";
+    assert!(last.ends_with(want), "{log}");
 }
 
 /// Freed, a move makes up for what it is behind and still ends where it was to end; an axis without a position

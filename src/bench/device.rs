@@ -134,7 +134,7 @@ fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), Sp
     let row = model.map.row(id);
     let asked = value;
     // People write the bits of a negative number as well as the number.
-    let bits = u32::try_from(value).ok().map(|raw| row.kind.value(raw));
+    let bits = row.kind.of_bits(value);
     let value = [Some(value), bits].into_iter().flatten().find(|value| row.admits(*value));
     match value {
         _ if model.wiring.shows(id).is_some() => {

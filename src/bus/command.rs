@@ -6,7 +6,13 @@ use crate::event::{DriveId, Remark, RemarkId, Trouble, What};
 use crate::fault::{Habits, Rule};
 use crate::time::Duration;
 use crate::words::{AlarmCause, Word};
+use std::ops::RangeInclusive;
 use thiserror::Error;
+
+/// The times that a contact which bounces may take from one edge to the next: a contact does nothing faster, and what
+/// is slower is no bounce.
+pub const BETWEEN_EDGES: RangeInclusive<Duration> =
+    Duration::from_micros(1)..=Duration::from_secs(60);
 
 /// Something to do to a drive, or to the weather on its line.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,9 +48,9 @@ pub enum Command {
         drive: DriveId,
         /// Which terminal, from 0.
         index: u8,
-        /// So many times it leaves its level and comes back.
+        /// So many times it leaves its level and comes back; 1 at least.
         times: u16,
-        /// From one edge to the next; the first comes at once.
+        /// From one edge to the next, one of [`BETWEEN_EDGES`]; the first comes at once.
         every: Duration,
     },
     /// Power on or off; all stations of the device with it. What is there already stays.
@@ -90,6 +96,9 @@ pub enum CommandError {
         /// There are this many.
         have: usize,
     },
+    /// A contact does not bounce so.
+    #[error("a contact bounces 1 to 65535 times, with 1us to 1min from edge to edge")]
+    NoBounce,
     /// Nothing can happen in a drive that has no power.
     #[error("the drive has no power")]
     NoPower,
@@ -149,6 +158,9 @@ impl Bus {
             }
             Command::Bounce { index, times, every, .. } => {
                 terminal(drive, index)?;
+                if times == 0 || !BETWEEN_EDGES.contains(&every) {
+                    return Err(CommandError::NoBounce);
+                }
                 drive.bounce_terminal(now, index, times, every);
             }
             Command::Trouble { trouble, on, .. } => {

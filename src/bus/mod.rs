@@ -18,7 +18,7 @@ mod output;
 mod unheard;
 mod weather;
 
-pub use command::{Command, CommandError, Reply};
+pub use command::{BETWEEN_EDGES, Command, CommandError, Reply};
 pub use heard::Heard;
 pub use output::{LinkId, Output, Wake, WakeReason};
 

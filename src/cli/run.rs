@@ -4,8 +4,8 @@ use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
 use super::state::State;
 use super::{FAILED, Failure, INVALID, NO_PORT};
 use drivemu::bench::{
-    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, Saved, WireSpec, kind_of, match_line,
-    parse_saved,
+    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, Saved, SpecProblem, WireSpec, Wish,
+    kind_of, match_line, parse_saved,
 };
 use drivemu::fault::{Habits, Pacing};
 use drivemu::model::builtin::Builtin;
@@ -174,14 +174,20 @@ fn wishes(args: &RunArgs, model: &Model) -> Result<(Choices, BTreeMap<String, i6
                 let all = option.choices.join(", ");
                 return Err(Failure::invalid(format!("--set {wish}: {key} takes {all}")));
             }
-            choices.insert(key.into(), value.into());
+            if choices.insert(key.into(), value.into()).is_some() {
+                return Err(Failure::invalid(format!("--set {wish}: {key} is chosen twice")));
+            }
             continue;
         }
         let number = parse_integer(value).ok_or_else(|| {
-            let text = format!("--set {wish}: `{value}` is no number, and {key} is no option");
+            let text = format!(
+                "--set {wish}: `{value}` is not a whole number, and {key} is not an option"
+            );
             Failure::invalid(text)
         })?;
-        set.insert(key.into(), number);
+        if set.insert(key.into(), number).is_some() {
+            return Err(Failure::invalid(format!("--set {wish}: {key} is set twice")));
+        }
     }
     Ok((choices, set))
 }
@@ -194,9 +200,9 @@ fn line(
 ) -> Result<BenchLine, Failure> {
     let spec = DeviceSpec { unit: args.unit, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {
-        let sentence = |it: &drivemu::bench::SpecProblem| match &it.advice {
-            Some(advice) => format!("{} ({advice})\n", it.what),
-            None => format!("{}\n", it.what),
+        let sentence = |it: &SpecProblem| match &it.advice {
+            Some(advice) => format!("{}: {} ({advice})\n", flag(&it.wish, &spec), it.what),
+            None => format!("{}: {}\n", flag(&it.wish, &spec), it.what),
         };
         Failure::invalid(problems.iter().map(sentence).collect::<String>())
     })?;
@@ -223,6 +229,19 @@ fn line(
     let habits = Habits { pacing, ..Habits::default() };
     let (name, devices, faults) = (name.into(), vec![device], Vec::new());
     Ok(BenchLine { name, port, wire, devices, faults, habits })
+}
+
+/// What on the command line asked for it.
+fn flag(wish: &Wish, spec: &DeviceSpec) -> String {
+    match wish {
+        Wish::Set(name) | Wish::SetName(name) => match spec.set.get(name) {
+            Some(value) => format!("--set {name}={value}"),
+            None => format!("--set {name}"),
+        },
+        Wish::Unit => "--unit".into(),
+        // These have no flags.
+        Wish::Switches | Wish::Terminal(_) => "the drive".into(),
+    }
 }
 
 fn port(args: &RunArgs) -> PortSpec {

@@ -73,7 +73,7 @@ impl Drive {
     }
 
     /// Has the contact on input terminal `index` leave its level and come back so many `times`, each edge
-    /// `every` after the one before. One that bounces already begins anew.
+    /// `every` after the one before; both are above 0. One that bounces already begins anew.
     pub fn bounce_terminal(&mut self, now: Instant, index: u8, times: u16, every: Duration) {
         self.advance_to(now);
         self.changes.push_back(Change::Bounces { index, times, every });
@@ -81,9 +81,7 @@ impl Drive {
         self.troubles.bounces.retain(|bounce| bounce.bit != bit);
         self.troubles.bounced &= !bit;
         let edges = u32::from(times) * 2;
-        if edges > 0 {
-            self.troubles.bounces.push(Bounce { bit, index, edges, every, next: now });
-        }
+        self.troubles.bounces.push(Bounce { bit, index, edges, every, next: now });
         self.advance_to(now);
     }
 

@@ -5,15 +5,18 @@ use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
 use crate::serial::Mode;
+use crate::text::one_line;
 use crate::wire::hex::to_hex;
 use crate::words::{Then, Word};
 
 /// Rows of one transaction that are told; the rest is counted.
 const ROWS_TOLD: usize = 6;
 
-/// `0.532 unit 1 write C03.04 jog speed = 7000: refused, range 0..6000 -> exception 03`.
+/// `0.532 unit 1 write C03.04 jog speed = 7000: refused, range 0..6000 -> exception 03`. One line, whatever names of
+/// drives, rows and steps hold.
 pub fn line(event: &Event, bus: &Bus) -> String {
-    format!("{} {}", event.at, what(&event.what, bus))
+    let line = format!("{} {}", event.at, what(&event.what, bus));
+    one_line(&line).into_owned()
 }
 
 fn what(what: &What, bus: &Bus) -> String {

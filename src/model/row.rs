@@ -290,6 +290,14 @@ impl Kind {
         }
     }
 
+    /// The number that `bits`, written as an unsigned number, stand for: -4 for 65532 in one signed word. `None` if
+    /// they are more than the type has.
+    pub fn of_bits(self, bits: i64) -> Option<i64> {
+        let most = if self.words() == 1 { u16::MAX.into() } else { u32::MAX };
+        let bits = u32::try_from(bits).ok().filter(|bits| *bits <= most)?;
+        Some(self.value(bits))
+    }
+
     /// The bits of `value`, without those that do not fit.
     pub fn wrapped(self, value: i64) -> u32 {
         if self.words() == 1 { value as u32 & 0xFFFF } else { value as u32 }
@@ -320,6 +328,11 @@ mod tests {
         assert_eq!(Kind::I16.raw(-70_000), 0x8000);
         assert_eq!(Kind::I32.wrapped(0x8000_0000), 0x8000_0000);
         assert_eq!(Kind::I16.wrapped(-70_000), 0xEE90);
+        assert_eq!(Kind::I16.of_bits(0xFFFC), Some(-4));
+        assert_eq!(Kind::I32.of_bits(0xFFFF_FFFC), Some(-4));
+        for (kind, bits) in [(Kind::U16, 0x1_0000), (Kind::I16, 99_999), (Kind::U32, 1 << 32)] {
+            assert_eq!(kind.of_bits(bits), None);
+        }
     }
 
     #[test]

@@ -143,7 +143,7 @@ axes:
     next:
     - one
     - k: v
-      w: |
+      w: >-
         text
         more
   0x11: [1,

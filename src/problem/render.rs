@@ -8,6 +8,7 @@ mod strip;
 use super::place::Places;
 use super::place::lines::Lines;
 use super::{Mark, Path, Problem, Seg};
+use crate::text::is_control;
 use std::fmt::Write as _;
 
 /// Prints every problem in the order of the file, those without any place last.
@@ -78,7 +79,7 @@ fn with_line(out: &mut String, file: &str, problem: &Problem, mark: Mark, line: 
 
 /// Keeps it one line: a key or a message of the reader may hold line feeds.
 fn push_line(out: &mut String, line: &str) {
-    let line: String = line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let line: String = line.chars().map(|c| if is_control(c) { ' ' } else { c }).collect();
     out.push_str(line.trim_end());
     out.push('\n');
 }

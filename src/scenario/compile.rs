@@ -16,6 +16,10 @@ use crate::words::{Output, Quantity, Word};
 use serde::Deserialize;
 use serde_yaml::Value;
 
+/// The least time from one repetition of a step to the next. At the usual rate a machine that does more often a thing
+/// that takes it some time would do nothing else.
+const REPEAT_EVERY: Duration = Duration::from_millis(1);
+
 /// Reads a scenario for the lines of a bench.
 ///
 /// # Errors
@@ -61,7 +65,7 @@ impl Reader<'_> {
         let steps = head.as_mapping_mut().and_then(|head| head.remove("steps"));
         let root = Path::root();
         let head: Option<Head> = section::read(&head, &root, KEYS, &mut self.problems);
-        let limit = head.and_then(|head| self.time(head.limit.as_ref(), &root.key("limit")));
+        let limit = head.and_then(|head| self.limit(head.limit.as_ref(), &root.key("limit")));
         let path = root.key("steps");
         let items = match steps {
             Some(Value::Sequence(items)) => items,
@@ -86,6 +90,15 @@ impl Reader<'_> {
             parts[line.unwrap_or(0)].steps.extend(step);
         }
         Scenario { parts }
+    }
+
+    /// By when all is to be done.
+    fn limit(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
+        let limit = self.time(text, path)?;
+        if limit.is_zero() {
+            self.refuse(path, "with a limit of 0 the run ends before its first step", None);
+        }
+        Some(limit)
     }
 
     /// Which line the step is about.
@@ -125,7 +138,8 @@ impl Reader<'_> {
         for (i, condition) in raw.expect.iter().enumerate() {
             expect.extend(self.condition(condition, line, drive, &path.key("expect").index(i)));
         }
-        let within = self.time(raw.within.as_ref(), &path.key("within")).unwrap_or_default();
+        let within = self.time_above_zero(raw.within.as_ref(), &path.key("within"));
+        let within = within.unwrap_or_default();
         let name = raw.name.clone();
         Some(Step { name, trigger: trigger?, commands, repeat, expect, within })
     }
@@ -160,7 +174,7 @@ impl Reader<'_> {
             let condition = self.condition(condition, line, drive, &path.key("when"));
             return condition.map(Trigger::When);
         }
-        let wait = self.time(raw.wait.as_ref(), &path.key("wait"));
+        let wait = self.time_above_zero(raw.wait.as_ref(), &path.key("wait"));
         Some(Trigger::Wait(wait.unwrap_or_default()))
     }
 
@@ -181,8 +195,9 @@ impl Reader<'_> {
     ) -> Option<(u32, Duration)> {
         let own = path.key("repeat");
         let every = self.time(Some(&repeat.every), &own.key("every"))?;
-        if every.is_zero() {
-            self.refuse(&own.key("every"), "there is a time from one to the next", None);
+        if every < REPEAT_EVERY {
+            let what = format!("`every` must be at least {REPEAT_EVERY:?}");
+            self.refuse(&own.key("every"), what, None);
         }
         if repeat.times < 2 {
             self.refuse(&own.key("times"), "to repeat is to do it twice or more often", None);
@@ -233,7 +248,25 @@ impl Reader<'_> {
         let drive = self.drive(line, raw.unit, drive, &path.key("unit"));
         let subject = self.subject(raw, line, drive, path);
         let test = self.test(raw, path);
-        Some(Condition { drive, subject: subject?, test: test? })
+        let condition = Condition { drive, subject: subject?, test: test? };
+        self.refuse_never(&condition, line, path);
+        Some(condition)
+    }
+
+    /// No register shows a number that its type does not have.
+    fn refuse_never(&mut self, condition: &Condition, line: Option<usize>, path: &Path) {
+        let site = line.and_then(|line| self.sites.as_ref()?.get(line));
+        let (Some(site), Subject::Row(row)) = (site, condition.subject) else { return };
+        let row = site.model(condition.drive).map.row(row);
+        let ((low, high), label) = (row.kind.limits(), row.label());
+        let (key, number) = match condition.test {
+            Test::Is(number) if !(low..=high).contains(&number) => ("is", number),
+            Test::Within(Some(above), _) if above >= high => ("above", above),
+            Test::Within(_, Some(below)) if below <= low => ("below", below),
+            Test::Is(_) | Test::Within(..) => return,
+        };
+        let what = format!("never holds: {label} shows {low}..{high}, and this is {number}");
+        self.refuse(&path.key(key), what, None);
     }
 
     fn subject(
@@ -345,11 +378,22 @@ impl Reader<'_> {
     }
 
     fn time(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
-        let time = parse_duration(text?);
+        let text = text?;
+        let time = parse_duration(text);
         if time.is_none() {
-            self.refuse(path, "a time has a unit", Some("write 5s, 200ms or 2min"));
+            let what = format!("`{text}` is not a time");
+            self.refuse(path, what, Some("write a number and us, ms, s or min: 200ms"));
         }
         time
+    }
+
+    /// A time that is more than none at all.
+    fn time_above_zero(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
+        let time = self.time(text, path)?;
+        if time.is_zero() {
+            self.refuse(path, "a time of 0 changes nothing", Some("leave it out"));
+        }
+        Some(time)
     }
 
     fn refuse(&mut self, path: &Path, what: impl Into<String>, advice: Option<&str>) {

@@ -2,7 +2,7 @@
 //!
 //! Scenarios and transcripts speak this language.
 
-use crate::bus::Command;
+use crate::bus::{BETWEEN_EDGES, Command};
 use crate::event::{DriveId, Trouble};
 use crate::model::Model;
 use crate::problem::suggest;
@@ -69,12 +69,16 @@ impl Order {
             ["terminal", name, level] => Self::Terminal((*name).into(), is_on(level)?),
             ["stick", name, level] => Self::Stick((*name).into(), is_on(level)?),
             ["bounce", name, times, every] => {
-                let times = times.parse().ok().filter(|times| *times > 0);
-                let numbers = times.zip(parse_duration(every));
-                let (times, every) = numbers.ok_or_else(|| {
-                    no("a contact bounces so many times, 1 to 65535, with a time from edge to edge")
+                let count = times.parse().ok().filter(|count| *count > 0);
+                let count = count.ok_or_else(|| {
+                    no(format!("a contact bounces 1 to 65535 times, not `{times}`"))
                 })?;
-                Self::Bounce((*name).into(), times, every)
+                let between = parse_duration(every).filter(|it| BETWEEN_EDGES.contains(it));
+                let between = between.ok_or_else(|| NoOrder {
+                    what: format!("the time from edge to edge is 1us to 1min, not `{every}`"),
+                    advice: Some("write `bounce NAME 3 5ms`".into()),
+                })?;
+                Self::Bounce((*name).into(), count, between)
             }
             ["raise", cause] => Self::Raise(cause_of(cause)?),
             ["hold", cause, level] => {

@@ -1,5 +1,6 @@
 //! Diagnostics on stderr: plain sentences, marked only where something is wrong.
 
+use crate::text::one_line;
 use std::fmt;
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::fmt::FmtContext;
@@ -48,7 +49,8 @@ where
             Level::WARN => writer.write_str("warning: ")?,
             _ => {}
         }
-        context.field_format().format_fields(writer.by_ref(), event)?;
-        writeln!(writer)
+        let mut text = String::new();
+        context.field_format().format_fields(Writer::new(&mut text), event)?;
+        writeln!(writer, "{}", one_line(&text))
     }
 }

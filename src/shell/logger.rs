@@ -6,6 +6,7 @@
 use crate::bus::Bus;
 use crate::event::Event;
 use crate::log::{json, text};
+use crate::text::one_line;
 use crate::time::Duration;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -78,7 +79,7 @@ impl Logger {
     fn text(&self, event: &Event, name: &str, bus: &Bus) -> String {
         let line = text::line(event, bus);
         match (self.names, line.split_once(' ')) {
-            (true, Some((time, what))) => format!("{time} {name} {what}"),
+            (true, Some((time, what))) => format!("{time} {} {what}", one_line(name)),
             _ => line,
         }
     }

@@ -3,11 +3,15 @@
 //! Not here: a text that is no YAML at all (see [`syntax`](super::syntax)).
 
 use super::key::Key;
-use super::{Mark, Path, Problem};
+use super::{Mark, Path, Problem, Seg};
+use crate::text::is_control;
 use std::collections::BTreeMap;
 
 /// Levels of maps and lists that a file may have.
 pub(super) const MAX_DEPTH: usize = 64;
+
+/// Keys whose texts may have several lines; names have one.
+const PROSE: [&str; 4] = ["about", "assumed", "note", "why"];
 
 /// Line and spelling of the keys of one map so far, by name.
 pub(super) type Seen = BTreeMap<String, (usize, String)>;
@@ -30,6 +34,19 @@ pub(super) fn document(mark: Mark) -> Problem {
 pub(super) fn depth(path: Path, mark: Mark) -> Problem {
     let what = format!("nested deeper than {MAX_DEPTH} levels");
     Problem { mark: Some(mark), ..Problem::value(path, what) }
+}
+
+/// A text at `path` that would disturb a log or a terminal.
+pub(super) fn text(text: &str, path: &Path, mark: Mark) -> Option<Problem> {
+    let is_prose =
+        matches!(path.segs().last(), Some(Seg::Key(key)) if PROSE.contains(&key.as_str()));
+    let is_bad = |c: &char| is_control(*c) && !(is_prose && matches!(c, '\n' | '\t'));
+    let what = match text.chars().find(is_bad)? {
+        '\n' => "a line break must not stand here".to_owned(),
+        c => format!("the character U+{:04X} must not stand here", u32::from(c)),
+    };
+    let problem = Problem::value(path.clone(), what).advise("leave it out");
+    Some(Problem { mark: Some(mark), ..problem })
 }
 
 /// A key of the map at `path` that is there already or that can't be one; `None` for a good one.

@@ -61,6 +61,7 @@ impl Walk<'_> {
             Event::Scalar(text, style, anchor, tag) => {
                 let mark = self.scalar_mark(&text, style, span);
                 self.refuse_anchor(anchor, mark);
+                self.problems.extend(refuse::text(&text, &self.here(), mark));
                 let plain = style == ScalarStyle::Plain && tag.is_none();
                 self.add(Node { mark, kind: Kind::Leaf }, Key::new(text.into_owned(), plain));
             }
