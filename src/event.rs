@@ -455,6 +455,8 @@ pub enum Trouble {
 pub enum Ignored {
     /// The power stage is off.
     PowerOff,
+    /// A level keeps the power stage from being switched on.
+    Inhibited,
     /// A stop level holds the axis.
     Held,
     /// The axis moves.

@@ -53,6 +53,15 @@ fn each_input_acts_from_each_source() {
                     source(&mut rig, input, false);
                     assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
                 }
+                Input::EnableInhibit => {
+                    source(&mut rig, input, true);
+                    give(&mut rig, Action::Enable);
+                    assert!(!rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                    source(&mut rig, input, false);
+                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                    source(&mut rig, input, true);
+                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
+                }
                 Input::Stop | Input::QuickStop => {
                     running(&mut rig);
                     source(&mut rig, input, true);
@@ -122,6 +131,17 @@ fn each_input_acts_from_each_source() {
                     rig.advance(Duration::from_secs(5));
                     let want = if input == Input::MoveStart { 200_000 } else { 40_000 };
                     assert_eq!(rig.drive().quantity(Quantity::PositionActual), want, "{place}");
+                }
+                Input::ReversePosition => {
+                    give(&mut rig, Action::Enable);
+                    source(&mut rig, input, true);
+                    for want in [-200_000, 0] {
+                        give(&mut rig, Action::MoveStart);
+                        source(&mut rig, input, false);
+                        rig.advance(Duration::from_secs(5));
+                        let position = rig.drive().quantity(Quantity::PositionActual);
+                        assert_eq!(position, want, "{place}");
+                    }
                 }
                 Input::SegmentStep => {
                     segment::chain(&mut rig, 0x0002, 0);

@@ -1,7 +1,8 @@
 //! Ready, enabled, tripped: whether the power stage is on, and why not.
 //!
 //! The power stage is on while somebody wants it on (a level, or a command that stays), the drive is
-//! initialised, no level releases it and no alarm stands. Some alarms leave it on until the axis has stopped.
+//! initialised, no level releases it and no alarm stands. A level can keep it from being switched on. Some alarms
+//! leave it on until the axis has stopped.
 //! When an alarm goes, a want that still holds switches it on again.
 
 use crate::event::Change;
@@ -28,6 +29,8 @@ pub struct Servo {
     wanted: bool,
     /// A level that forbids it, whatever asks for it.
     released: bool,
+    /// A level that keeps it from being switched on.
+    inhibited: bool,
     /// A command that asked for it and stays until another takes it back.
     latched: bool,
     alarm: Option<Trip>,
@@ -46,6 +49,7 @@ impl Servo {
             starts_until,
             wanted: false,
             released: false,
+            inhibited: false,
             latched: enabled,
             alarm: None,
             braking: false,
@@ -56,12 +60,18 @@ impl Servo {
 
     /// Could it be enabled?
     pub fn is_ready(&self) -> bool {
-        self.starts_until.is_none() && self.alarm.is_none()
+        self.starts_until.is_none() && self.alarm.is_none() && !self.inhibited
+    }
+
+    /// Does a level keep a power stage that is off from being switched on?
+    pub fn is_inhibited(&self) -> bool {
+        self.inhibited && !self.is_enabled()
     }
 
     /// Is the power stage on?
     pub fn is_enabled(&self) -> bool {
         let may = self.starts_until.is_none() && (self.alarm.is_none() || self.braking);
+        let may = may && (self.was_enabled || !self.inhibited);
         may && (self.wanted || self.latched) && !self.released
     }
 
@@ -86,6 +96,12 @@ impl Servo {
             self.starts_until = None;
             tell(Change::Ready);
         }
+        self.settle(tell);
+    }
+
+    /// A level that keeps a power stage that is off from being switched on, whatever asks for it.
+    pub fn inhibit(&mut self, inhibited: bool, tell: &mut impl FnMut(Change)) {
+        self.inhibited = inhibited;
         self.settle(tell);
     }
 
@@ -209,6 +225,24 @@ mod tests {
         });
         assert!(servo.alarm().is_some());
         assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
+    }
+
+    #[test]
+    fn what_is_inhibited_stays_on_and_is_not_switched_on() {
+        let (servo, changes) = after(|servo, mut tell| {
+            servo.inhibit(true, &mut tell);
+            servo.want(true, false, &mut tell);
+            assert!(!servo.is_enabled() && !servo.is_ready() && servo.is_inhibited());
+            servo.inhibit(false, &mut tell);
+            assert!(servo.is_enabled());
+            servo.inhibit(true, &mut tell);
+            assert!(servo.is_enabled() && !servo.is_inhibited());
+            servo.trip(FORCED, false, &mut tell);
+            servo.reset(&mut tell);
+        });
+        assert!(!servo.is_enabled());
+        let enabled = changes.iter().filter(|it| matches!(it, Change::Enabled(_)));
+        assert!(enabled.eq([&Change::Enabled(true), &Change::Enabled(false)]));
     }
 
     #[test]

@@ -86,7 +86,7 @@ impl Drive {
         let method = *homing.methods.get(&number)?;
         let fast = self.axis().speed(Setting::HomeFast).abs();
         let finish = self.finish(homing)?;
-        let way = self.axis().counts(Setting::HomeWay).filter(|_| finish.go);
+        let way = self.axis().way(Setting::HomeWay).filter(|_| finish.go);
         Some(HomeOrder {
             method,
             fast,
@@ -130,10 +130,10 @@ impl Drive {
         let model = self.model.clone();
         let finish = model.wiring.homing.as_ref().and_then(|homing| self.finish(homing));
         let finish = finish.unwrap_or(FINISH);
-        let way = self.axis().counts(Setting::HomeWay).unwrap_or(0);
+        let way = self.axis().way(Setting::HomeWay).unwrap_or(0);
         let goes_on = finish.go && !finish.of_origin;
         let point = if goes_on { origin.saturating_add(way) } else { origin };
-        let coordinate = self.axis().counts(Setting::HomeCoordinate).unwrap_or(0);
+        let coordinate = self.axis().way(Setting::HomeCoordinate).unwrap_or(0);
         let says = |position: i64| point.saturating_sub(position);
         self.zero = match finish.position {
             OriginPosition::Coordinate => says(coordinate),

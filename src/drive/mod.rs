@@ -7,6 +7,7 @@
 
 mod alarms;
 mod foresee;
+mod gear;
 mod home;
 mod levels;
 mod memory;
@@ -355,7 +356,8 @@ impl Drive {
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         // What is active from the start has not risen.
         self.inputs = self.active_inputs();
-        self.zero = self.seen_position().saturating_sub(self.position_at_power_on);
+        self.zero =
+            self.seen_position().saturating_sub(self.gear().counts(self.position_at_power_on));
         self.unit = self.unit_asked_for();
         let mode = self.mode_asked_for();
         let from = std::mem::replace(&mut self.mode, mode);
@@ -412,7 +414,13 @@ impl Drive {
             | Action::RunStart => {
                 obeyed = self.order(action, modifiers);
             }
-            Action::Enable => self.servo.latch(true, tell),
+            Action::Enable => {
+                self.servo.latch(true, tell);
+                if self.servo.is_inhibited() {
+                    obeyed = false;
+                    self.changes.push_back(Change::Ignored { action, why: Ignored::Inhibited });
+                }
+            }
             Action::Release => self.servo.latch(false, tell),
             Action::AlarmReset => self.servo.reset(tell),
             Action::EncoderReset => self.servo.reset_of(AlarmCause::Encoder, tell),

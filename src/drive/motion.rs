@@ -9,9 +9,19 @@ use crate::motion::{Machine, State};
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
 
 impl Drive {
-    /// Where the axis stands, in the drive's coordinate.
+    /// Where the axis stands, in the drive's coordinate and its units.
     pub(super) fn position(&self) -> i64 {
-        self.seen_position().saturating_sub(self.zero)
+        self.shown(self.seen_position())
+    }
+
+    /// A position of the machine in the drive's coordinate and its units.
+    pub(super) fn shown(&self, position: i64) -> i64 {
+        self.gear().units(position.saturating_sub(self.zero))
+    }
+
+    /// A position in the drive's coordinate and its units, in that of the machine.
+    pub(super) fn place(&self, position: i64) -> i64 {
+        self.gear().counts(position).saturating_add(self.zero)
     }
 
     /// Has positive counts go the way that a row says, once the axis stands. The position register goes on from what it says.
@@ -19,7 +29,7 @@ impl Drive {
         let row = self.model.wiring.axis.reversed;
         let reversed = row.is_some_and(|row| self.bank.value(&self.model, row) != 0);
         if reversed != self.reversed && !self.motor.is_moving() {
-            let position = self.position();
+            let position = self.seen_position().saturating_sub(self.zero);
             self.motor.turn_round(self.now);
             self.reversed = reversed;
             self.zero = self.motor.position(self.now).saturating_sub(position);
@@ -92,7 +102,7 @@ impl Drive {
             SoftLimitRule::AfterHoming => self.home_done,
             SoftLimitRule::Always => true,
         };
-        in_force.then(|| [low, high].map(|it| self.zero.saturating_add(it)))
+        in_force.then(|| [low, high].map(|it| self.place(it)))
     }
 
     /// Tells what the axis has told, which is about a segment where `segment` says so. Has it changed what is
@@ -174,7 +184,7 @@ impl Drive {
 
     /// What the axis tells, as its drive tells it.
     fn told(&self, stage: Stage, segment: Option<u16>) -> Option<Change> {
-        let at = |position: i64| position.saturating_sub(self.zero);
+        let at = |position: i64| self.shown(position);
         let method = self.method;
         Some(match stage {
             Stage::Moves(to) => match segment {

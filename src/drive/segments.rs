@@ -144,9 +144,13 @@ impl Drive {
         interrupt: bool,
         segment: Option<u16>,
     ) -> Result<(), Ignored> {
-        let (now, zero) = (self.now, self.zero);
         let (by, how) = self.settings(rows).next_move();
-        let target = |here: i64| (if absolute { zero } else { here }).saturating_add(by);
+        let by = if self.inputs.has(Input::ReversePosition) { by.saturating_neg() } else { by };
+        let (now, zero, gear) = (self.now, self.zero, self.gear());
+        let target = |here: i64| {
+            let from = if absolute { 0 } else { gear.units(here.saturating_sub(zero)) };
+            gear.counts(from.saturating_add(by)).saturating_add(zero)
+        };
         self.motor.start_move(now, target, how, interrupt)?;
         self.tell_stages(segment);
         self.chain.end();
@@ -168,7 +172,7 @@ impl Drive {
                 }
                 Condition::Step => Wait::Step,
                 Condition::Position => {
-                    let place = (value.round() as i64).saturating_add(self.zero);
+                    let place = self.place(value.round() as i64);
                     Wait::Position(self.motor.reaches(self.now, place))
                 }
             });

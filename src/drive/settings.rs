@@ -88,9 +88,14 @@ impl Settings<'_> {
         Ramp { speed, accel, decel, start_speed }
     }
 
-    /// Counts, if a row holds them.
+    /// What a row holds in counts or in units of position.
     pub(super) fn counts(self, setting: Setting) -> Option<i64> {
         self.value(setting).map(|(value, _)| value.round() as i64)
+    }
+
+    /// Counts for what a row holds in units of position.
+    pub(super) fn way(self, setting: Setting) -> Option<i64> {
+        self.counts(setting).map(|units| self.drive.gear().counts(units))
     }
 
     /// Counts per second.

@@ -1,6 +1,7 @@
 //! Input signals gathered from terminals, words and bits; output signals told from the state.
 
 use super::Drive;
+use crate::event::{Change, Ignored};
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
 use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
@@ -21,7 +22,12 @@ impl Drive {
         if now.risen_since(before).has(Input::AlarmReset) {
             self.servo.reset(tell);
         }
+        self.servo.inhibit(now.has(Input::EnableInhibit), tell);
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
+        if now.risen_since(before).has(Input::ServoOn) && self.servo.is_inhibited() {
+            let (input, why) = (Input::ServoOn, Ignored::Inhibited);
+            self.changes.push_back(Change::InputIgnored { input, why });
+        }
         self.select_velocity();
         self.settle();
         if now.risen_since(before).has(Input::HomeStart) {

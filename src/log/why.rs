@@ -49,6 +49,7 @@ pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
 pub fn ignored(why: Ignored) -> &'static str {
     match why {
         Ignored::PowerOff => "the servo is off",
+        Ignored::Inhibited => "a signal inhibits it",
         Ignored::Held => "a stop input is active",
         Ignored::Moving => "the axis moves",
         Ignored::Homing => "the axis looks for its origin",

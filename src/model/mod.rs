@@ -23,9 +23,10 @@ pub use options::OptionInfo;
 pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use times::duration;
 pub use wiring::{
-    Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Hold, Homing,
-    InputWords, Limits, Link, Monitor, Number, OutputWords, PositionSegment, PositionSegments,
-    Reaction, Segments, Servo, Shown, Shows, Terminals, Triggers, VelocitySegments, Wiring,
+    Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Gear, Hold,
+    Homing, InputWords, Limits, Link, Monitor, Number, OutputWords, PositionSegment,
+    PositionSegments, Reaction, Segments, Servo, Shown, Shows, Terminals, Triggers,
+    VelocitySegments, Wiring,
 };
 
 /// One drive of one vendor, as data.

@@ -259,12 +259,23 @@ pub struct Axis {
     pub position_gain: Option<f64>,
     /// While the row is not 0, positive counts go the machine's negative way.
     pub reversed: Option<RowId>,
+    /// Between units of position and counts, where rows hold one.
+    pub gear: Option<Gear>,
     /// What `rpm` in the units of rows stands for, in revolutions a minute, where a row says.
     pub speed_unit: Option<Coded<f64>>,
     /// The rows that motions go by.
     pub settings: Vec<(Setting, RowId)>,
     /// Motions by number.
     pub segments: Segments,
+}
+
+/// The gear between units of position and counts: a unit is numerator by denominator counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Gear {
+    /// The row with the numerator, which can't hold 0.
+    pub numerator: RowId,
+    /// The row with the denominator, which can't hold 0.
+    pub denominator: RowId,
 }
 
 /// Counts for one revolution.
@@ -285,6 +296,7 @@ impl Default for Axis {
             coast,
             position_gain: None,
             reversed: None,
+            gear: None,
             speed_unit: None,
             settings: Vec::new(),
             segments: Segments::default(),

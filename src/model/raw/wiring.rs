@@ -181,10 +181,23 @@ pub struct RawAxis {
     /// A row: while it is not 0, positive counts go the negative way of a bench's machine. A change counts once
     /// the axis stands.
     pub reversed: Option<String>,
+    /// The gear between units of position and counts. Default: 1 to 1.
+    pub gear: Option<RawGear>,
     /// Where a row decides what `rpm` in the units of rows stands for: `rpm` or `0.1 rpm`, say, by value.
     pub speed_unit: Option<RawChosen<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
+}
+
+/// The gear between units of position, in which targets and positions are, and counts: a unit is numerator by
+/// denominator counts. Neither row can hold 0.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawGear {
+    /// The row with the numerator.
+    pub numerator: String,
+    /// The row with the denominator.
+    pub denominator: String,
 }
 
 /// Counts for one revolution.

@@ -1,9 +1,9 @@
 //! The axis, and whether what is wired to it goes together: what starts a motion has the numbers it needs,
 //! and what changes nothing is told of.
 
-use super::Counts;
 use super::compile::Wirer;
-use crate::model::raw::{RawAxis, RawCounts, RawSegments};
+use super::{Counts, Gear};
+use crate::model::raw::{RawAxis, RawCounts, RawGear, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::{Dimension, Unit};
 use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Word};
@@ -121,6 +121,7 @@ impl Wirer<'_> {
         self.wiring.axis.position_gain = raw.position_gain;
         let reversed = raw.reversed.as_ref();
         self.wiring.axis.reversed = reversed.and_then(|it| self.row(it, &path.key("reversed")));
+        self.wiring.axis.gear = raw.gear.as_ref().and_then(|it| self.gear(it, &path.key("gear")));
         let unit = raw.speed_unit.as_ref();
         let read = |wirer: &mut Self, text: &String, path: &Path| wirer.speed_unit(text, path);
         self.wiring.axis.speed_unit =
@@ -134,6 +135,24 @@ impl Wirer<'_> {
             self.problems.push(problem.advise("write `rpm`, or a factor and `rpm`"));
         }
         unit.map(|it| it.scale)
+    }
+
+    fn gear(&mut self, raw: &RawGear, path: &Path) -> Option<Gear> {
+        let mut whole = |register: &str, key: &str| {
+            let path = path.key(key);
+            let row = self.row(register, &path)?;
+            let it = self.rows.map.row(row);
+            if it.spans.iter().any(|(low, _)| *low <= 0) {
+                let what =
+                    format!("{} may hold 0 or less, and a gear has whole numbers from 1 on", it.id);
+                let problem = Problem::value(path, what);
+                self.problems.push(problem.advise("give the row a `range` from 1 on"));
+            }
+            Some(row)
+        };
+        let numerator = whole(&raw.numerator, "numerator");
+        let denominator = whole(&raw.denominator, "denominator");
+        Some(Gear { numerator: numerator?, denominator: denominator? })
     }
 
     fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {

@@ -56,6 +56,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
         mark(row);
     }
     wiring.axis.reversed.into_iter().for_each(&mut mark);
+    wiring.axis.gear.iter().flat_map(|it| [it.numerator, it.denominator]).for_each(&mut mark);
     wiring.axis.speed_unit.iter().for_each(|it| mark(it.row));
     wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
