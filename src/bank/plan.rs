@@ -8,7 +8,7 @@ use crate::words::{Cause, Detail, Refusal};
 /// Most registers in a 0x10 request (application protocol, 6.12).
 const WRITE_MAX: usize = 123;
 
-/// A read that may happen: proof that every address of the span is mapped and may be read.
+/// A read that may happen: proof that every address of the span may be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadPlan {
     span: Span,
@@ -35,7 +35,10 @@ impl ReadPlan {
     ) -> usize {
         let mut shown: Option<(RowId, u32)> = None;
         for (slot, address) in into.iter_mut().zip(self.span.addresses()) {
-            let Located::Word { row: id, word, .. } = model.map.locate(address) else { continue };
+            let Located::Word { row: id, word, .. } = model.map.locate(address) else {
+                *slot = 0;
+                continue;
+            };
             let row = model.map.row(id);
             // Both words of a pair come from one look at it.
             let raw = match shown {
@@ -80,7 +83,11 @@ impl Bank {
     pub fn plan_read(&self, model: &Model, span: Span) -> Result<ReadPlan, Refusal> {
         let mut causes = Causes::default();
         quantity(span, model.line.max_read, &mut causes);
+        let zero = model.line.unlisted_reads_zero;
         for address in span.addresses() {
+            if zero && model.map.locate(address) == Located::Hole {
+                continue;
+            }
             let Some((row, ..)) = locate(model, address, &mut causes) else { continue };
             if model.map.row(row).access == Access::Write && !model.line.write_only_reads_zero {
                 causes.meet(Cause::WriteOnly, Detail::Row(row));

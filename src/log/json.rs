@@ -133,6 +133,9 @@ fn item_fields(drive: &Drive, item: Item) -> Value {
             fields
         }
         Item::Bare(address, word) => json!({"address": address, "word": word}),
+        Item::Unlisted(first, last) => {
+            json!({"address": first, "words": last - first + 1, "mapped": false})
+        }
     }
 }
 

@@ -14,6 +14,8 @@ pub enum Item {
     Half(RowId, u16),
     /// An address without a row.
     Bare(u16, u16),
+    /// Addresses without a row, from the first to the last, that a read gave as 0.
+    Unlisted(u16, u16),
 }
 
 /// What a request does, in rows.
@@ -62,7 +64,15 @@ pub fn answer(drive: &Drive, span: Span, pdu: &[u8]) -> Vec<Item> {
         let bytes = pdu.get(2 + 2 * i..4 + 2 * i)?;
         Some(u16::from_be_bytes([bytes[0], bytes[1]]))
     };
-    items(drive, span, word)
+    let mut told: Vec<Item> = Vec::new();
+    for item in items(drive, span, word) {
+        match (told.last_mut(), item) {
+            (Some(Item::Unlisted(_, last)), Item::Bare(address, _)) => *last = address,
+            (_, Item::Bare(address, _)) => told.push(Item::Unlisted(address, address)),
+            _ => told.push(item),
+        }
+    }
+    told
 }
 
 fn items(drive: &Drive, span: Span, word: impl Fn(usize) -> Option<u16>) -> Vec<Item> {
@@ -102,6 +112,10 @@ pub fn text(drive: &Drive, item: Item) -> String {
         Item::Row(id, value) => format!("{} = {}", label(map.row(id)), number(drive, id, value)),
         Item::Half(id, word) => format!("half of {} = 0x{word:04X}", label(map.row(id))),
         Item::Bare(address, word) => format!("0x{address:04X} = {word}"),
+        Item::Unlisted(first, last) if first == last => {
+            format!("0x{first:04X} = 0 (not mapped)")
+        }
+        Item::Unlisted(first, last) => format!("0x{first:04X}..0x{last:04X} = 0 (not mapped)"),
     }
 }
 

@@ -34,13 +34,7 @@ pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
         (Cause::State, Detail::Row(row)) => {
             format!("{} is locked while the servo is on", label(map.row(row)))
         }
-        (_, Detail::Value { row, .. }) => {
-            let range = map.row(row).range_text();
-            match range.contains(", ") {
-                true => format!("only {range}"),
-                false => format!("range {range}"),
-            }
-        }
+        (_, Detail::Value { row, .. }) => map.row(row).admits_text(),
         (cause, detail) => format!("{cause:?} {detail:?}"),
     }
 }

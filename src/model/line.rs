@@ -1,7 +1,8 @@
 //! How a drive talks, compiled: functions, limits, word order, the ladder of refusals.
 
 use super::raw::{
-    RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawWordOrder, RawWriteOnlyReads,
+    RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawUnlistedReads, RawWordOrder,
+    RawWriteOnlyReads,
 };
 use super::rows::{Compiled, order};
 use super::{Access, RowId, duration};
@@ -45,6 +46,8 @@ pub struct LineRules {
     pub long_access: LongAccess,
     /// Does reading a write-only row give 0 (or is it refused)?
     pub write_only_reads_zero: bool,
+    /// Does reading an address without a row give 0 (or is it refused)?
+    pub unlisted_reads_zero: bool,
     /// Causes and their codes, first one first.
     pub refuse: Refuse,
 }
@@ -236,6 +239,7 @@ pub(super) fn compile(
             RawLongAccess::Whole => LongAccess::Whole,
         },
         write_only_reads_zero: raw.write_only_reads == RawWriteOnlyReads::Zero,
+        unlisted_reads_zero: raw.unlisted_reads == RawUnlistedReads::Zero,
         refuse,
     })
 }

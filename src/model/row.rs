@@ -16,6 +16,8 @@ pub struct Row {
     pub kind: Kind,
     /// Values that may be written, in spans.
     pub spans: Vec<(i64, i64)>,
+    /// Are they the values of `values`, for want of a range?
+    pub listed: bool,
     /// Value as it leaves the factory.
     pub init: u32,
     /// Unit of the value.
@@ -250,7 +252,24 @@ impl Row {
     pub fn range_text(&self) -> String {
         span_text(&self.spans)
     }
+
+    /// What a write may carry, in words: `range 0..6000`, `only -4..-1, 1..14`, `only 0 (none), 1 (absolute)`.
+    pub fn admits_text(&self) -> String {
+        let named = |(value, name): (&i64, &String)| format!("{value} ({name})");
+        let range = self.range_text();
+        match () {
+            () if self.listed && self.values.len() <= NAMED => {
+                let named: Vec<_> = self.values.iter().map(named).collect();
+                format!("only {}", named.join(", "))
+            }
+            () if self.listed || self.spans.len() > 1 => format!("only {range}"),
+            () => format!("range {range}"),
+        }
+    }
 }
+
+/// Longer lists of values are told as spans.
+const NAMED: usize = 8;
 
 /// Spans of values as people write them.
 pub(super) fn span_text(spans: &[(i64, i64)]) -> String {

@@ -94,15 +94,22 @@ fn without_overlaps(
 
 fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row {
     let kind = kind(raw.kind);
-    let spans = spans(&raw.range, kind, path, problems);
+    let listed = raw.range.is_none() && !raw.values.is_empty() && raw.access != RawAccess::R;
+    let spans = match listed {
+        true => one_by_one(raw.values.keys().copied()),
+        false => spans(&raw.range, kind, path, problems),
+    };
     let in_range = spans.iter().any(|(low, high)| (*low..=*high).contains(&raw.init));
     let (low, high) = kind.limits();
     if !(low..=high).contains(&raw.init) {
         let what = format!("{} does not fit the type, {low}..{high}", raw.init);
         problems.push(Problem::value(path.key("init"), what));
     } else if !in_range {
-        let what = format!("init {} lies outside the range {}", raw.init, span_text(&spans));
+        let kind = if listed { "values" } else { "range" };
+        let what = format!("init {} lies outside the {kind} {}", raw.init, span_text(&spans));
         let advice = match raw.init {
+            0 if listed => "give an init that is listed; without one it is 0",
+            _ if listed => "give an init that is listed, or a `range`",
             0 => "give an init inside it; without one it is 0",
             _ => "give an init inside it, or widen the range",
         };
@@ -123,6 +130,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         problems.push(Problem::value(path.key("unit"), what).advise(advice));
     }
     reject_keys_without_effect(raw, kind, path, problems);
+    reject_values_never_held(raw, kind, &spans, path, problems);
     for bit in raw.bits.keys().filter(|bit| u16::from(**bit) >= 16 * kind.words()) {
         let what = format!("the row has no bit {bit}");
         problems.push(Problem::key(path.key("bits").key(bit), what));
@@ -136,6 +144,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
         at: raw.at,
         kind,
         spans,
+        listed,
         init: kind.raw(raw.init),
         unit: unit.unwrap_or(Unit::NONE),
         unit_text: raw.unit.clone().unwrap_or_default(),
@@ -199,6 +208,40 @@ fn reject_keys_without_effect(
     if raw.word_order.is_some() && kind.words() == 1 {
         reject("word_order", "a row of one word");
     }
+}
+
+/// A value with a meaning that no write may carry is a slip of the list or of the range.
+fn reject_values_never_held(
+    raw: &super::raw::RawRow,
+    kind: Kind,
+    spans: &[(i64, i64)],
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) {
+    let (low, high) = kind.limits();
+    for value in raw.values.keys() {
+        let what = if !(low..=high).contains(value) {
+            format!("{value} does not fit the type, {low}..{high}")
+        } else if !spans.iter().any(|(low, high)| (low..=high).contains(&value)) {
+            format!("{value} lies outside the range {}", span_text(spans))
+        } else {
+            continue;
+        };
+        let problem = Problem::key(path.key("values").key(value), what);
+        problems.push(problem.advise("widen the range, or leave the value out"));
+    }
+}
+
+/// Spans that hold the listed values and nothing between them; `values` ascend.
+fn one_by_one(values: impl Iterator<Item = i64>) -> Vec<(i64, i64)> {
+    let mut spans: Vec<(i64, i64)> = Vec::new();
+    for value in values {
+        match spans.last_mut().filter(|(_, high)| high.checked_add(1) == Some(value)) {
+            Some((_, high)) => *high = value,
+            None => spans.push((value, value)),
+        }
+    }
+    spans
 }
 
 fn spans(

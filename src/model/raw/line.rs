@@ -44,6 +44,9 @@ pub struct RawLine {
     /// What reading a write-only row gives; default `refused`.
     #[serde(default)]
     pub write_only_reads: RawWriteOnlyReads,
+    /// What reading an address without a row gives, where rows follow above it; default `refused`.
+    #[serde(default)]
+    pub unlisted_reads: RawUnlistedReads,
     /// How long the master may be silent: each request to this unit, refused or not, and each broadcast
     /// starts the time anew; at its end alarm `comm_timeout` is raised. Default: for ever.
     pub timeout: Option<RawHold>,
@@ -153,6 +156,18 @@ pub enum RawWriteOnlyReads {
     /// Always 0.
     Zero,
     /// Cause `write_only`.
+    #[default]
+    Refused,
+}
+
+/// What reading an address without a row gives. A write to one, and a read beyond the last row, are refused in any case.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawUnlistedReads {
+    /// 0, so that a block may reach across it.
+    Zero,
+    /// Cause `address`.
     #[default]
     Refused,
 }

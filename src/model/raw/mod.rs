@@ -281,6 +281,7 @@ pub const KEYS: &[&str] = &[
     "type",
     "unit",
     "units",
+    "unlisted_reads",
     "user",
     "value",
     "values",

@@ -15,7 +15,8 @@ pub struct RawRow {
     /// Width and sign; default `u16`.
     #[serde(default, rename = "type")]
     pub kind: RawType,
-    /// Values that a write may carry: `[low, high]`, or a list of such pairs. Default: all of the type.
+    /// Values that a write may carry: `[low, high]`, or a list of such pairs. Default: those of `values`,
+    /// and without such a list all of the type.
     pub range: Option<RawRange>,
     /// Value as it leaves the factory; default 0.
     #[serde(default)]
@@ -47,7 +48,7 @@ pub struct RawRow {
     pub zh: Option<String>,
     /// Section of the manual.
     pub see: String,
-    /// What single values mean.
+    /// What single values mean. Without a `range` a write may carry no other.
     #[serde(default)]
     pub values: BTreeMap<i64, String>,
     /// What single bits mean, from bit 0.
