@@ -240,6 +240,8 @@ pub enum Change {
     },
     /// The position register was set to 0.
     PositionCleared,
+    /// The turns of the encoder count from 0.
+    TurnsCleared,
     /// All values were stored.
     Stored,
     /// A master wears the memory out.

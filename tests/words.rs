@@ -4,6 +4,7 @@
 
 mod homing;
 mod motion;
+mod quantities;
 mod segment;
 mod thresholds;
 
@@ -193,10 +194,30 @@ fn each_output_shows_both_ways() {
             }
             Output::Ready | Output::Alarm => raise(&mut rig, AlarmCause::Overload),
             Output::Enabled | Output::BrakeOpen => give(&mut rig, Action::Enable),
-            Output::Moving | Output::ZeroSpeed | Output::SpeedAgrees | Output::Turning => {
-                running(&mut rig)
+            Output::Moving
+            | Output::ZeroSpeed
+            | Output::SpeedAgrees
+            | Output::Turning
+            | Output::CommandPresent => running(&mut rig),
+            Output::Coincides | Output::Near => {
+                give(&mut rig, Action::Enable);
+                seen[0] = shown(&rig, output);
+                underway(&mut rig);
             }
-            Output::Coincides | Output::Near => underway(&mut rig),
+            Output::TorqueLimited => {
+                let machine = Machine { hard_stop: Some([-10, 10]), ..Machine::default() };
+                rig = acme(&DeviceSpec { machine, ..DeviceSpec::default() });
+                give(&mut rig, Action::Enable);
+                give(&mut rig, Action::RunStart);
+                rig.advance(Duration::from_millis(50));
+            }
+            Output::EncoderA | Output::EncoderB | Output::EncoderZ => {
+                rig = acme(&DeviceSpec { start: 2, ..DeviceSpec::default() });
+            }
+            Output::Selected0 => by_bit(&mut rig, Input::Select0, true),
+            Output::Selected1 => by_bit(&mut rig, Input::Select1, true),
+            Output::Selected2 => by_bit(&mut rig, Input::Select2, true),
+            Output::Selected3 => by_bit(&mut rig, Input::Select3, true),
             Output::SpeedReached => {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::RunStart);
@@ -239,47 +260,6 @@ fn each_output_shows_both_ways() {
 }
 
 #[test]
-fn each_quantity_shows() {
-    let switches = Some(9);
-    let spec = DeviceSpec { switches, position: -70_000, ..DeviceSpec::default() };
-    for &quantity in Quantity::ALL {
-        let mut rig = acme(&spec);
-        let want = match quantity {
-            Quantity::PositionActual => -70_000,
-            Quantity::SpeedActual => {
-                running(&mut rig);
-                let row = row_showing(&rig, &Shows::Quantity(quantity));
-                let value = rig.drive().show(row) as i64;
-                assert_eq!((value, rig.drive().quantity(quantity)), (600, 60), "in tenths");
-                continue;
-            }
-            Quantity::ErrorFollowing => {
-                underway(&mut rig);
-                // 262144 counts/s by a gain of 100 1/s, less what a ramp of 1310720 counts/s2 is behind that.
-                2490
-            }
-            Quantity::AlarmCode => {
-                raise(&mut rig, AlarmCause::Overload);
-                0x41
-            }
-            Quantity::SegmentRunning => {
-                segment::start(&mut rig, &[Input::Select0, Input::Select1]);
-                by_bit(&mut rig, Input::Select0, false);
-                19
-            }
-            Quantity::SegmentNext => {
-                by_bit(&mut rig, Input::Select1, true);
-                18
-            }
-            Quantity::UnitInUse | Quantity::UnitSwitches => 9,
-        };
-        let row = row_showing(&rig, &Shows::Quantity(quantity));
-        let value = rig.drive().model().map.row(row).kind.value(rig.drive().show(row));
-        assert_eq!((value, rig.drive().quantity(quantity)), (want, want), "`{}`", quantity.name());
-    }
-}
-
-#[test]
 fn each_action_acts() {
     for &action in Action::ALL {
         let mut rig = acme(&DeviceSpec { position: 5, ..DeviceSpec::default() });
@@ -294,6 +274,7 @@ fn each_action_acts() {
             Action::Enable
             | Action::ClearAlarmHistory
             | Action::ClearPosition
+            | Action::ClearTurns
             | Action::StoreAll
             | Action::RestoreFactory
             | Action::PowerCycle => {}
@@ -317,6 +298,7 @@ fn each_action_acts() {
             Action::AlarmReset | Action::EncoderReset => Change::AlarmCleared,
             Action::ClearAlarmHistory => Change::AlarmHistoryCleared,
             Action::ClearPosition => Change::PositionCleared,
+            Action::ClearTurns => Change::TurnsCleared,
             Action::StoreAll => Change::Stored,
             Action::RestoreFactory => Change::FactoryRestored,
             Action::PowerCycle => Change::PoweredOn,

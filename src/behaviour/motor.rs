@@ -16,6 +16,7 @@ mod limits;
 mod look;
 
 pub use home::HomeOrder;
+pub use look::Control;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
@@ -71,6 +72,8 @@ pub struct Motor {
     /// How fast a move makes up for that, 1/s; `None` at once.
     gain: Option<f64>,
     phase: Phase,
+    /// Is its speed controlled, and not its position? Kept by a stop.
+    by_speed: bool,
     /// Where the motion goes in the end: the positive direction?
     forward: bool,
     /// Slopes of a run and of a stop, from the order that started the motion.
@@ -105,6 +108,7 @@ impl Motor {
             lag: Lag::NONE,
             gain,
             phase: Phase::Standing,
+            by_speed: false,
             forward: true,
             accel: 0.0,
             decel: 0.0,
@@ -370,6 +374,11 @@ impl Motor {
             Phase::Moving => self.lead(now).1,
             Phase::Standing | Phase::Stopping => self.carried_lag(now),
             Phase::Running | Phase::Jogging { .. } | Phase::Homing | Phase::Coasting => Lag::NONE,
+        };
+        self.by_speed = match phase {
+            Phase::Running | Phase::Jogging { .. } => true,
+            Phase::Stopping => self.by_speed,
+            Phase::Standing | Phase::Moving | Phase::Homing | Phase::Coasting => false,
         };
         let jumps = trajectory.state(now).position != self.state(now).position;
         (self.trajectory, self.phase, self.arrived) = (trajectory, phase, false);

@@ -192,6 +192,10 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
             .collect::<Vec<_>>()
             .join(", "),
         Shows::OutputWord(word) => format!("output word {}", word + 1),
+        Shows::InputBits(of) => {
+            let (row, _) = &model.wiring.input_bits[*of];
+            format!("signals of {}", model.map.row(*row).id)
+        }
         Shows::InputTerminals(_) => "input terminals".into(),
         Shows::OutputTerminals(_) => "output terminals".into(),
         Shows::PastAlarm(_) => "alarms of the past".into(),

@@ -84,6 +84,8 @@ pub struct Drive {
     reversed: bool,
     /// Where the motor is when the position register says 0.
     zero: i64,
+    /// Revolutions of the encoder when its turns were cleared; a battery keeps them over power-off.
+    cleared_turns: i64,
     /// Has an origin been found since power came on?
     home_done: bool,
     /// Number of the last homing method.
@@ -126,6 +128,7 @@ impl Drive {
             chain: Chain::default(),
             reversed: false,
             zero: 0,
+            cleared_turns: 0,
             home_done: false,
             method: 0,
             never_enabled: true,
@@ -428,6 +431,10 @@ impl Drive {
             Action::ClearPosition => {
                 self.zero = self.seen_position();
                 self.changes.push_back(Change::PositionCleared);
+            }
+            Action::ClearTurns => {
+                self.cleared_turns = self.full_turns();
+                self.changes.push_back(Change::TurnsCleared);
             }
             Action::StoreAll => {
                 self.bank.store_all(&self.model);

@@ -2,7 +2,7 @@
 //! coordinate. What rows say about them is read in `settings.rs`.
 
 use super::Drive;
-use crate::behaviour::{Stage, Wants};
+use crate::behaviour::{Control, Stage, Wants};
 use crate::event::Change;
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
@@ -55,9 +55,12 @@ impl Drive {
         rpm(self.seen_speed(), self.counts_per_rev())
     }
 
-    /// How fast a run or a jog was ordered to go, in revolutions a minute.
+    /// The speed that was ordered, in revolutions a minute, where speed is what is controlled.
     pub(super) fn rpm_ordered(&self) -> Option<f64> {
-        self.motor.speed_ordered().map(|speed| rpm(speed, self.counts_per_rev()))
+        match self.motor.control()? {
+            Control::Position => None,
+            Control::Speed(speed) => Some(rpm(speed, self.counts_per_rev())),
+        }
     }
 
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
@@ -184,7 +187,7 @@ impl Drive {
 
     /// What the axis tells, as its drive tells it.
     fn told(&self, stage: Stage, segment: Option<u16>) -> Option<Change> {
-        let at = |position: i64| self.shown(position);
+        let at = |position: i64| self.wrapped(self.shown(position));
         let method = self.method;
         Some(match stage {
             Stage::Moves(to) => match segment {

@@ -147,8 +147,10 @@ impl Drive {
         let (by, how) = self.settings(rows).next_move();
         let by = if self.inputs.has(Input::ReversePosition) { by.saturating_neg() } else { by };
         let (now, zero, gear) = (self.now, self.zero, self.gear());
+        // A target is a place as the position register counts, which may have begun anew.
+        let begun = self.position() - self.wrapped(self.position());
         let target = |here: i64| {
-            let from = if absolute { 0 } else { gear.units(here.saturating_sub(zero)) };
+            let from = if absolute { begun } else { gear.units(here.saturating_sub(zero)) };
             gear.counts(from.saturating_add(by)).saturating_add(zero)
         };
         self.motor.start_move(now, target, how, interrupt)?;

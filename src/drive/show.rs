@@ -18,6 +18,7 @@ impl Drive {
                 bits.iter().map(bit).sum()
             }
             Some(Shows::OutputWord(word)) => self.output_word(*word),
+            Some(Shows::InputBits(of)) => self.input_bits(*of),
             Some(Shows::InputTerminals(monitor)) => self.monitor_inputs(*monitor),
             Some(Shows::OutputTerminals(monitor)) => self.monitor_outputs(*monitor),
         }
@@ -32,23 +33,80 @@ impl Drive {
     pub fn quantity(&self, quantity: Quantity) -> i64 {
         match quantity {
             Quantity::PositionActual => self.position(),
-            Quantity::SpeedActual => self.rpm().round() as i64,
+            Quantity::PositionFeedback => self.feedback(),
+            Quantity::PositionCommand => self.feedback().saturating_add(self.deviation()),
+            Quantity::CommandRate | Quantity::SpeedActual | Quantity::ElectricalAngle => {
+                self.measure(quantity).round() as i64
+            }
+            Quantity::EncoderAngle => self.encoder_angle(),
+            Quantity::EncoderTurns => self.encoder_turns(),
             Quantity::SegmentRunning => self.segment.into(),
             Quantity::SegmentNext => self.next_segment().into(),
-            Quantity::ErrorFollowing => self.motor.deviation(self.now).round() as i64,
+            Quantity::ErrorFollowing => self.deviation(),
             Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),
         }
     }
 
+    /// Where the encoder is, in the drive's coordinate and in counts, whatever the gear.
+    fn feedback(&self) -> i64 {
+        self.seen_position().saturating_sub(self.zero)
+    }
+
+    /// `position` as the row of the actual position shows it, which has fewer bits than an axis has counts.
+    pub(super) fn wrapped(&self, position: i64) -> i64 {
+        let shows = Shows::Quantity(Quantity::PositionActual);
+        let rows = self.model.map.rows().map(|(id, row)| (self.model.wiring.shows(id), row.kind));
+        let mut kinds = rows.filter(|(it, _)| *it == Some(&shows)).map(|(_, kind)| kind);
+        kinds.next().map_or(position, |kind| kind.value(kind.wrapped(position)))
+    }
+
+    /// A number that comes in parts of its base unit.
+    fn measure(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::SpeedActual => self.rpm(),
+            Quantity::CommandRate => self.motor.command_rate(self.now),
+            Quantity::ElectricalAngle => {
+                let poles = f64::from(self.model.wiring.axis.pole_pairs);
+                let turn = self.encoder_angle() as f64 / self.counts_per_rev();
+                (turn * poles).fract() * 360.0
+            }
+            _ => self.quantity(quantity) as f64,
+        }
+    }
+
+    /// Counts that the axis is behind its command.
+    fn deviation(&self) -> i64 {
+        self.motor.deviation(self.now).round() as i64
+    }
+
+    /// Counts from the zero mark of the encoder, below a revolution.
+    pub(super) fn encoder_angle(&self) -> i64 {
+        self.seen_position().rem_euclid(self.counts_per_rev() as i64)
+    }
+
+    fn encoder_turns(&self) -> i64 {
+        self.full_turns() - self.cleared_turns
+    }
+
+    /// Whole revolutions of the encoder, whatever was cleared.
+    pub(super) fn full_turns(&self) -> i64 {
+        self.seen_position().div_euclid(self.counts_per_rev() as i64)
+    }
+
     fn show_quantity(&self, row: RowId, quantity: Quantity) -> u32 {
         let unit = self.unit_of(row);
         let row = self.model.map.row(row);
         match quantity {
-            Quantity::SpeedActual => row.kind.raw((self.rpm() / unit.scale).round() as i64),
+            Quantity::SpeedActual | Quantity::CommandRate | Quantity::ElectricalAngle => {
+                row.kind.raw((self.measure(quantity) / unit.scale).round() as i64)
+            }
             // A counter that is full begins anew; it does not stick.
-            Quantity::PositionActual => row.kind.wrapped(self.position()),
+            Quantity::PositionActual
+            | Quantity::PositionFeedback
+            | Quantity::PositionCommand
+            | Quantity::EncoderTurns => row.kind.wrapped(self.quantity(quantity)),
             _ => row.kind.raw(self.quantity(quantity)),
         }
     }

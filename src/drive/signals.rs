@@ -56,12 +56,16 @@ impl Drive {
             .with(Output::Enabled, enabled)
             .with(Output::Alarm, self.servo.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
-            .with(Output::Moving, self.motor.is_moving())
+            .with(Output::Moving, self.motor.is_moving() || self.motor.speed(self.now) != 0.0)
             .with(Output::HomeDone, self.home_done)
             .with(Output::AtLimitPos, self.inputs.has(Input::LimitPos))
             .with(Output::AtLimitNeg, self.inputs.has(Input::LimitNeg))
             .with(Output::BeyondPos, beyond(true))
             .with(Output::BeyondNeg, beyond(false))
+            .with(Output::Selected0, self.inputs.has(Input::Select0))
+            .with(Output::Selected1, self.inputs.has(Input::Select1))
+            .with(Output::Selected2, self.inputs.has(Input::Select2))
+            .with(Output::Selected3, self.inputs.has(Input::Select3))
             .with(Output::Segment0, self.segment & 1 != 0)
             .with(Output::Segment1, self.segment & 2 != 0)
             .with(Output::Segment2, self.segment & 4 != 0)
@@ -71,6 +75,14 @@ impl Drive {
             .with(Output::User1, user >> 1 & 1 != 0)
             .with(Output::User2, user >> 2 & 1 != 0);
         self.with_positions(self.with_speeds(outputs))
+    }
+
+    /// What has come of row `of` of those whose bits are signals, bit by bit.
+    pub(super) fn input_bits(&self, of: usize) -> u32 {
+        let (row, bits) = &self.model.wiring.input_bits[of];
+        bits.iter().fold(self.bank.raw(*row), |word, (bit, signal)| {
+            word & !(1 << bit) | u32::from(self.inputs.has(*signal)) << bit
+        })
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.

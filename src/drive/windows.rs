@@ -1,6 +1,7 @@
 //! Outputs that hold a number of the axis against another one: computed when somebody looks.
 
 use super::Drive;
+use crate::behaviour::Control;
 use crate::model::Number;
 use crate::time::{Duration, Instant};
 use crate::words::{Output, Outputs, Threshold};
@@ -13,7 +14,12 @@ impl Drive {
         let reached = limit(Threshold::ReachedSpeed).zip(limit(Threshold::ReachedWindow));
         let agrees = ordered.zip(limit(Threshold::AgreesWindow));
         let agrees = agrees.is_some_and(|(to, window)| (speed - to).abs() < window);
-        let arrived = if ordered.is_some() { agrees } else { self.is_in_position() };
+        let arrived = if ordered.is_some() { agrees } else { self.is_at_rest() };
+        let from = limit(Threshold::CommandSpeed).unwrap_or(0.0);
+        let present = match ordered {
+            Some(to) => to.abs() > from,
+            None => self.motor.command_rate(self.now) != 0.0,
+        };
         outputs
             .with(Output::ZeroSpeed, speed.abs() <= limit(Threshold::ZeroSpeed).unwrap_or(0.0))
             .with(
@@ -26,30 +32,54 @@ impl Drive {
             )
             .with(Output::SpeedAgrees, agrees)
             .with(Output::Arrived, arrived)
+            .with(Output::CommandPresent, present)
     }
 
     /// `outputs` with those that are about positions.
     pub(super) fn with_positions(&self, outputs: Outputs) -> Outputs {
         let deviation = self.motor.deviation(self.now).abs();
-        let within = |it| self.threshold(it).is_some_and(|window| deviation <= window);
+        let control = self.motor.control();
+        let follows = control == Some(Control::Position);
+        let within = |it| follows && self.threshold(it).is_some_and(|window| deviation <= window);
+        let held = control.is_some() && self.motor.is_held_back(self.now);
+        let encoder = self.seen_position();
+        let quarter = encoder.rem_euclid(4);
         outputs
             .with(Output::InPosition, self.is_in_position())
             .with(Output::Coincides, within(Threshold::CoincidesWindow))
             .with(Output::Near, within(Threshold::NearWindow))
+            .with(Output::TorqueLimited, held)
+            .with(Output::EncoderA, quarter == 1 || quarter == 2)
+            .with(Output::EncoderB, quarter >= 2)
+            .with(Output::EncoderZ, self.encoder_angle() == 0)
     }
 
     fn is_in_position(&self) -> bool {
         self.in_position_at().is_some_and(|at| at <= self.now)
     }
 
+    /// Is the command at rest in position control, and the axis with it for as long as it takes to settle?
+    fn is_at_rest(&self) -> bool {
+        let at = self.motor.rests_at(self.now, self.position_window());
+        let follows = self.motor.control() == Some(Control::Position);
+        follows && at.is_some_and(|at| at + self.settling_time() <= self.now)
+    }
+
     /// When the axis is, or will be, where its last move was to end, for as long as it takes to settle. That move
     /// has ended.
     pub(super) fn in_position_at(&self) -> Option<Instant> {
-        let window = self.threshold(Threshold::PositionWindow).unwrap_or(0.0);
+        let at = self.motor.arrives_at(self.now, self.position_window())?;
+        Some(at + self.settling_time())
+    }
+
+    fn position_window(&self) -> f64 {
+        self.threshold(Threshold::PositionWindow).unwrap_or(0.0)
+    }
+
+    fn settling_time(&self) -> Duration {
         let settle = self.threshold(Threshold::PositionSettle).unwrap_or(0.0);
         // Rows hold no times that are negative or beyond a few years.
-        let settle = Duration::try_from_secs_f64(settle).unwrap_or_default();
-        self.motor.arrives_at(self.now, window).map(|at| at + settle)
+        Duration::try_from_secs_f64(settle).unwrap_or_default()
     }
 
     /// The number in the base unit of its dimension.

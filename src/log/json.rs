@@ -177,6 +177,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             ("word_expired", json!({"row": word, "hold": hold, "held_ms": held_ms}))
         }
         Change::PositionCleared => ("position_cleared", json!({})),
+        Change::TurnsCleared => ("turns_cleared", json!({})),
         Change::Stored => ("stored", json!({})),
         Change::Wear { row, writes, within } => {
             let row = row.map(|row| &drive.model().map.row(row).id);

@@ -192,6 +192,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             format!("{word} = 0: not refreshed for {held} s ({hold})")
         }
         Change::PositionCleared => "position set to 0".into(),
+        Change::TurnsCleared => "encoder turns set to 0".into(),
         Change::Stored => "all parameters stored".into(),
         Change::Wear { row, writes, within } => {
             let row = row.map(|row| rows::label(drive.model().map.row(row)));

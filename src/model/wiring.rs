@@ -91,6 +91,8 @@ pub enum Shows {
     Bits(Vec<(u8, Shown)>),
     /// Word `n` of the output words.
     OutputWord(u16),
+    /// The signals of a row of `input_bits`, of this index, bit by bit.
+    InputBits(usize),
     /// The input terminals.
     InputTerminals(Monitor),
     /// The output terminals.
@@ -257,6 +259,8 @@ pub struct Axis {
     pub coast: Duration,
     /// How fast a move makes up for a deviation, 1/s; `None` where it has none.
     pub position_gain: Option<f64>,
+    /// Pole pairs of the motor.
+    pub pole_pairs: u16,
     /// While the row is not 0, positive counts go the machine's negative way.
     pub reversed: Option<RowId>,
     /// Between units of position and counts, where rows hold one.
@@ -295,6 +299,7 @@ impl Default for Axis {
             counts_per_rev: Counts::Fixed(1),
             coast,
             position_gain: None,
+            pole_pairs: 1,
             reversed: None,
             gear: None,
             speed_unit: None,

@@ -16,6 +16,7 @@ words! {
         EncoderReset "encoder_reset" "clear alarm `encoder`, also where no other reset can; any other alarm stays",
         ClearAlarmHistory "clear_alarm_history" "forget the alarms that `alarm_history` shows",
         ClearPosition "clear_position" "call the present position 0",
+        ClearTurns "clear_turns" "count the revolutions of the encoder from 0, beginning with the present one",
         StoreAll "store_all" "keep all values in force over power-off; ignored while the axis moves",
         RestoreFactory "restore_factory" "put every value back as it left the factory; ignored while the axis moves",
         PowerCycle "power_cycle" "start anew, as if power had been off and on",
@@ -46,6 +47,7 @@ impl Action {
             | Self::AlarmReset
             | Self::EncoderReset
             | Self::ClearPosition
+            | Self::ClearTurns
             | Self::StoreAll
             | Self::RestoreFactory
             | Self::PowerCycle => true,

@@ -7,6 +7,12 @@ words! {
     /// A number with a dimension.
     Quantity {
         PositionActual "position.actual" "where the axis stands, in the drive's coordinate",
+        PositionCommand "position.command" "where the command of the axis is, in the drive's coordinate: `position.feedback` and `error.following`",
+        PositionFeedback "position.feedback" "where the encoder is, in the drive's coordinate and in counts of the command",
+        CommandRate "command.rate" "counts a second of the command in position control; negative in the negative direction",
+        EncoderAngle "encoder.angle" "where the encoder is in its revolution, in counts from its zero mark",
+        EncoderTurns "encoder.turns" "whole revolutions of the encoder since its turns were cleared; negative in the negative direction",
+        ElectricalAngle "encoder.electrical_angle" "the angle of the motor's field: that of the encoder times `axis.pole_pairs`, below a whole turn",
         SpeedActual "speed.actual" "how fast the axis goes; negative in the negative direction",
         SegmentRunning "segment.running" "number of the position segment that started last; 0 after power-on",
         SegmentNext "segment.next" "number of the position segment that comes next in the chain under way; without one, of the one selected",
@@ -21,7 +27,14 @@ impl Quantity {
     /// What it measures; the row's unit must fit.
     pub fn dimension(self) -> Dimension {
         match self {
-            Self::PositionActual | Self::ErrorFollowing => Dimension::Position,
+            Self::PositionActual
+            | Self::PositionCommand
+            | Self::PositionFeedback
+            | Self::EncoderAngle
+            | Self::ErrorFollowing => Dimension::Position,
+            Self::CommandRate => Dimension::Frequency,
+            Self::EncoderTurns => Dimension::Turns,
+            Self::ElectricalAngle => Dimension::Angle,
             Self::SpeedActual => Dimension::Speed,
             Self::SegmentRunning
             | Self::SegmentNext

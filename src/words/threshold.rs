@@ -15,6 +15,7 @@ words! {
         CoincidesWindow "coincides.window" "how far the axis may be behind its command for `coincides`",
         NearWindow "near.window" "how far the axis may be behind its command for `near`",
         AgreesWindow "agrees.window" "how near `speed_agrees` takes a speed for the one that was ordered",
+        CommandSpeed "command.speed" "`command_present` shows above this speed; 0 if left out",
     }
 }
 
@@ -26,7 +27,8 @@ impl Threshold {
             | Self::TurningSpeed
             | Self::ReachedSpeed
             | Self::ReachedWindow
-            | Self::AgreesWindow => Dimension::Speed,
+            | Self::AgreesWindow
+            | Self::CommandSpeed => Dimension::Speed,
             Self::PositionWindow | Self::CoincidesWindow | Self::NearWindow => Dimension::Position,
             Self::PositionSettle => Dimension::Time,
         }

@@ -160,6 +160,7 @@ fn each_action_adds_up_or_does_not() {
             | Action::AlarmReset
             | Action::EncoderReset
             | Action::ClearPosition
+            | Action::ClearTurns
             | Action::StoreAll
             | Action::RestoreFactory
             | Action::PowerCycle => 1,

@@ -15,6 +15,10 @@ fn each_threshold_counts() {
             Threshold::TurningSpeed => (Action::RunStart, Output::Turning, [4, 6]),
             Threshold::ReachedSpeed => (Action::RunStart, Output::SpeedReached, [66, 67]),
             Threshold::ReachedWindow => (Action::RunStart, Output::SpeedReached, [83, 84]),
+            Threshold::CommandSpeed => {
+                command_speed();
+                continue;
+            }
             Threshold::AgreesWindow => (Action::RunStart, Output::SpeedAgrees, [99, 100]),
             // 1310720 counts/s2 by a gain of 100 1/s are 13107 counts a second behind, from 10 ms on.
             Threshold::CoincidesWindow => (Action::MoveStart, Output::Coincides, [8, 10]),
@@ -35,4 +39,16 @@ fn each_threshold_counts() {
         }
         assert!(told[0] != told[1], "`{}`: {told:?}\n{}", threshold.name(), rig.log());
     }
+}
+
+/// A run of 2 rpm is no command, one of 2.1 rpm is.
+fn command_speed() {
+    let told = [20, 21].map(|speed| {
+        let set = [("P002".to_owned(), speed)].into_iter().collect();
+        let mut rig = acme(&DeviceSpec { set, ..DeviceSpec::default() });
+        give(&mut rig, Action::Enable);
+        give(&mut rig, Action::RunStart);
+        rig.drive().output(Output::CommandPresent)
+    });
+    assert_eq!(told, [false, true]);
 }

@@ -4,7 +4,27 @@ use super::{Motor, Phase};
 use crate::motion::State;
 use crate::time::Instant;
 
+/// What the drive holds to its command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Control {
+    /// The position; at a standstill and in a homing too.
+    Position,
+    /// The speed, which was ordered to be so many counts per second.
+    Speed(f64),
+}
+
 impl Motor {
+    /// What is controlled; `None` without power, and until an axis that runs out has stopped.
+    pub fn control(&self) -> Option<Control> {
+        match self.phase {
+            _ if !self.wants.power => None,
+            Phase::Coasting => None,
+            Phase::Standing => Some(Control::Position),
+            _ if self.by_speed => Some(Control::Speed(self.trajectory.last_speed())),
+            _ => Some(Control::Position),
+        }
+    }
+
     /// The last whole count reached, in the machine's coordinate.
     pub fn position(&self, now: Instant) -> i64 {
         let position = self.lag.position(&self.trajectory, now);
@@ -35,26 +55,42 @@ impl Motor {
         }
     }
 
-    /// How far the axis is behind its command, in counts.
+    /// How far the axis is behind its command, in counts. A homing is told where the axis is to be, so its command is
+    /// as far ahead as the axis is to be behind at its speed.
     pub fn deviation(&self, now: Instant) -> f64 {
-        self.trajectory.state(now).position - self.feedback(now).position
+        let feedback = self.feedback(now);
+        let behind = self.trajectory.state(now).position - feedback.position;
+        match self.gain.filter(|_| self.control() == Some(Control::Position)) {
+            Some(gain) if !self.lag.makes_up() => behind + feedback.speed / gain,
+            _ => behind,
+        }
+    }
+
+    /// Counts per second of the command, as far as it is one of positions.
+    pub fn command_rate(&self, now: Instant) -> f64 {
+        let position = self.control() == Some(Control::Position);
+        if position { self.trajectory.state(now).speed } else { 0.0 }
+    }
+
+    /// Is it held back from its command?
+    pub fn is_held_back(&self, now: Instant) -> bool {
+        let command = self.trajectory.state(now);
+        self.machine.hold(command) != command
     }
 
     /// When the axis is within `window` counts of the end of its last move for good. That move has ended by
     /// `now`, and nothing holds the axis back.
     pub fn arrives_at(&self, now: Instant, window: f64) -> Option<Instant> {
-        let command = self.trajectory.state(now);
-        let held = self.machine.hold(command) != command;
-        self.settles_at(window).filter(|_| self.arrived && !held)
+        self.rests_at(now, window).filter(|_| self.arrived)
+    }
+
+    /// When the axis is within `window` counts of its command for good, which is at rest. Nothing holds it back.
+    pub fn rests_at(&self, now: Instant, window: f64) -> Option<Instant> {
+        let rests = !self.is_moving() && !self.is_held_back(now);
+        self.settles_at(window).filter(|_| rests)
     }
 
     fn settles_at(&self, window: f64) -> Option<Instant> {
         self.lag.settles_at(&self.trajectory, window)
-    }
-
-    /// The speed that a run or a jog was ordered to have, in counts per second; `None` in any other phase.
-    pub fn speed_ordered(&self) -> Option<f64> {
-        let by_speed = matches!(self.phase, Phase::Running | Phase::Jogging { .. });
-        by_speed.then(|| self.trajectory.last_speed())
     }
 }

@@ -34,6 +34,9 @@ pub struct RawInputs {
     pub words: Option<RawInputWords>,
     /// Rows whose bits are signals: row -> bit -> signal, or `not_simulated` and the manual's name.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
+    /// Rows that show, bit by bit, what has come of such a row: monitor -> row of `bits`. A bit without a signal shows as it
+    /// was written.
+    pub monitors: BTreeMap<String, String>,
     /// Settings that take the signals of such bits away: row -> bit -> setting. While that is not 0, the bit does not act.
     pub claims: BTreeMap<String, BTreeMap<u8, RawDigit>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
@@ -178,6 +181,8 @@ pub struct RawAxis {
     /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
     /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
     pub position_gain: Option<f64>,
+    /// Pole pairs of the motor, for `encoder.electrical_angle`.
+    pub pole_pairs: Option<u16>,
     /// A row: while it is not 0, positive counts go the negative way of a bench's machine. A change counts once
     /// the axis stands.
     pub reversed: Option<String>,

@@ -119,6 +119,7 @@ impl Wirer<'_> {
             self.problems.push(Problem::value(path.key("position_gain"), what));
         }
         self.wiring.axis.position_gain = raw.position_gain;
+        self.pole_pairs(raw.pole_pairs, &path);
         let reversed = raw.reversed.as_ref();
         self.wiring.axis.reversed = reversed.and_then(|it| self.row(it, &path.key("reversed")));
         self.wiring.axis.gear = raw.gear.as_ref().and_then(|it| self.gear(it, &path.key("gear")));
@@ -126,6 +127,27 @@ impl Wirer<'_> {
         let read = |wirer: &mut Self, text: &String, path: &Path| wirer.speed_unit(text, path);
         self.wiring.axis.speed_unit =
             unit.and_then(|it| self.chosen(it, &path.key("speed_unit"), read));
+    }
+
+    fn pole_pairs(&mut self, raw: Option<u16>, path: &Path) {
+        let angle = super::Shows::Quantity(Quantity::ElectricalAngle);
+        let shown = self.wiring.shows.iter().flatten().any(|it| *it == angle);
+        let name = Quantity::ElectricalAngle.name();
+        match raw {
+            Some(0) => {
+                let what = "a motor has at least one pair of poles";
+                self.problems.push(Problem::value(path.key("pole_pairs"), what));
+            }
+            Some(_) if !shown => self.unused("pole_pairs", &format!("no row shows `{name}`"), path),
+            Some(pairs) => self.wiring.axis.pole_pairs = pairs,
+            None if shown => {
+                let what = format!("`{name}` shows, but nothing says how many poles the motor has");
+                let path = Path::root().key("quantities").key(name);
+                self.problems
+                    .push(Problem::key(path, what).advise("add `pole_pairs: N` to `axis`"));
+            }
+            None => {}
+        }
     }
 
     fn speed_unit(&mut self, text: &str, path: &Path) -> Option<f64> {
@@ -221,6 +243,11 @@ impl Wirer<'_> {
             Output::Arrived,
             Output::Coincides,
             Output::Near,
+            Output::CommandPresent,
+            Output::TorqueLimited,
+            Output::EncoderA,
+            Output::EncoderB,
+            Output::EncoderZ,
         ];
         let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
@@ -232,10 +259,21 @@ impl Wirer<'_> {
                 self.without_motion(setting.name(), &path.key(setting.name()));
             }
         }
-        let speed = super::Shows::Quantity(Quantity::SpeedActual);
-        if self.wiring.shows.iter().flatten().any(|it| *it == speed) {
-            let name = Quantity::SpeedActual.name();
-            self.without_motion(name, &Path::root().key("quantities").key(name));
+        let moving = [
+            Quantity::SpeedActual,
+            Quantity::PositionCommand,
+            Quantity::PositionFeedback,
+            Quantity::CommandRate,
+            Quantity::EncoderAngle,
+            Quantity::EncoderTurns,
+            Quantity::ElectricalAngle,
+        ];
+        for quantity in moving {
+            let shows = super::Shows::Quantity(quantity);
+            if self.wiring.shows.iter().flatten().any(|it| *it == shows) {
+                let path = Path::root().key("quantities").key(quantity.name());
+                self.without_motion(quantity.name(), &path);
+            }
         }
     }
 

@@ -140,6 +140,18 @@ impl Wirer<'_> {
             self.wiring.input_bits.push((row, map));
             self.wiring.not_simulated.input_bits.push((row, absent));
         }
+        for (monitor, register) in &raw.monitors {
+            let path = path.key("monitors").key(monitor);
+            let Some(row) = self.row_key(monitor, &path) else { continue };
+            let Some(of) = self.row(register, &path) else { continue };
+            match self.wiring.input_bits.iter().position(|(row, _)| *row == of) {
+                Some(index) => self.show(row, Shows::InputBits(index), &path, At::Key),
+                None => {
+                    let what = format!("{register} is not a row of `bits`");
+                    self.problems.push(Problem::value(path, what));
+                }
+            }
+        }
         self.claims(raw, &path.key("claims"));
         self.commands(&raw.commands, &path.key("commands"));
         self.triggers(&raw.triggers, &path.key("triggers"));

@@ -7,7 +7,7 @@ use crate::units::Unit;
 use crate::words::{Output, Quantity, Threshold, Word};
 
 /// An output with the number that it goes by, and whether it can do without.
-const USES: [(Output, Threshold, bool); 12] = [
+const USES: [(Output, Threshold, bool); 13] = [
     (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
     (Output::Turning, Threshold::TurningSpeed, false),
     (Output::SpeedReached, Threshold::ReachedSpeed, false),
@@ -18,6 +18,7 @@ const USES: [(Output, Threshold, bool); 12] = [
     (Output::Arrived, Threshold::PositionSettle, true),
     (Output::InPosition, Threshold::PositionWindow, true),
     (Output::InPosition, Threshold::PositionSettle, true),
+    (Output::CommandPresent, Threshold::CommandSpeed, true),
     (Output::Coincides, Threshold::CoincidesWindow, false),
     (Output::Near, Threshold::NearWindow, false),
 ];
