@@ -1,12 +1,16 @@
 //! What happened: the values that the log, the tests and later tools are made from. No text here.
 
+mod no_effect;
+
+pub use no_effect::{Ignored, Ordered};
+
 use crate::serial::Mode;
 use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{Action, AlarmCause, Condition, HomeEnd, Input, Refusal, RowId, Step};
+use crate::words::{Action, AlarmCause, Condition, HomeEnd, Refusal, RowId, Step};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -222,11 +226,6 @@ pub enum Change {
     },
     /// The alarm is gone.
     AlarmCleared,
-    /// An alarm reset came, but the alarm stays.
-    AlarmStays {
-        /// Why it was raised.
-        cause: AlarmCause,
-    },
     /// The alarms of the past are forgotten.
     AlarmHistoryCleared,
     /// An input word was not refreshed in time and returned to 0.
@@ -392,24 +391,12 @@ pub enum Change {
         /// Why.
         why: HomeEnd,
     },
-    /// An order came and does nothing.
-    Ignored {
-        /// The order.
-        action: Action,
-        /// Why.
+    /// An order has no effect.
+    NoEffect {
+        /// What was ordered.
+        order: Ordered,
+        /// Why nothing comes of it.
         why: Ignored,
-    },
-    /// An input signal rose and does nothing.
-    InputIgnored {
-        /// The signal.
-        input: Input,
-        /// Why.
-        why: Ignored,
-    },
-    /// A function that is not simulated was asked for: it does nothing.
-    NotSimulated {
-        /// Its index among those of the model.
-        function: u8,
     },
     /// Something is wrong with the device from now on, or no longer.
     Trouble {
@@ -450,27 +437,4 @@ pub enum Trouble {
     Frozen,
     /// The input terminal of this index, from 0, keeps its level.
     Stuck(u8),
-}
-
-/// Why an order does nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ignored {
-    /// The power stage is off.
-    PowerOff,
-    /// A level keeps the power stage from being switched on.
-    Inhibited,
-    /// A stop level holds the axis.
-    Held,
-    /// The axis moves.
-    Moving,
-    /// It looks for its origin.
-    Homing,
-    /// There is a limit in that direction.
-    Limit,
-    /// A parameter says that something else starts it, or nothing does.
-    Starter,
-    /// A parameter holds a value that stands for nothing.
-    NoMeaning,
-    /// Nothing has the number that is selected.
-    NoSegment,
 }

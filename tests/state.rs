@@ -222,7 +222,8 @@ fn kept_before_confirmed() {
     assert_eq!(outputs("hcfa-x", "01 03 E3 04 00 01"), stored[1..]);
     assert_eq!(outputs("hcfa-x", "01 06 E9 0B 00 63"), stored[1..]);
     assert_eq!(outputs("k-series", "01 06 01 30 00 05"), stored);
-    assert_eq!(outputs("k-series", "01 06 04 52 00 05"), stored[1..]);
+    // A row that nothing is wired to is told of.
+    assert_eq!(outputs("k-series", "01 06 04 52 00 05"), ["answer", "event", "event"]);
     assert_eq!(
         outputs("yako-closed-loop", "01 06 00 2D 00 42"),
         ["keep", "answer", "event", "event"]

@@ -99,11 +99,12 @@ impl Chain {
         });
     }
 
-    /// The edge came.
-    pub fn step(&mut self, now: Instant) {
-        self.under_way.iter_mut().for_each(|link| {
-            link.stepped.get_or_insert(now);
-        });
+    /// The edge came. Does the segment under way wait for it?
+    pub fn step(&mut self, now: Instant) -> bool {
+        let Some(link) = &mut self.under_way else { return false };
+        let waits = link.rule.waits.contains(&Some(Wait::Step)) && link.stepped.is_none();
+        link.stepped.get_or_insert(now);
+        waits
     }
 
     /// When it goes on by itself.

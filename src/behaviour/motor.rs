@@ -158,6 +158,21 @@ impl Motor {
         self.phase == Phase::Homing
     }
 
+    /// Does it go at a speed while a level asks for it?
+    pub fn is_jogging(&self) -> bool {
+        matches!(self.phase, Phase::Jogging { .. })
+    }
+
+    /// Does it come to a standstill already?
+    pub fn is_slowing(&self) -> bool {
+        matches!(self.phase, Phase::Stopping | Phase::Coasting)
+    }
+
+    /// Has an order ended what a level asks for? Then that must go before it acts again.
+    pub fn is_jog_spent(&self) -> bool {
+        self.jog_spent
+    }
+
     /// What it is doing.
     pub fn phase(&self) -> Phase {
         self.phase

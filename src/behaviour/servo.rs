@@ -5,7 +5,7 @@
 //! leave it on until the axis has stopped.
 //! When an alarm goes, a want that still holds switches it on again.
 
-use crate::event::Change;
+use crate::event::{Change, Ignored};
 use crate::time::{Duration, Instant};
 use crate::words::{AlarmCause, AlarmCauses};
 
@@ -63,11 +63,6 @@ impl Servo {
         self.starts_until.is_none() && self.alarm.is_none() && !self.inhibited
     }
 
-    /// Does a level keep a power stage that is off from being switched on?
-    pub fn is_inhibited(&self) -> bool {
-        self.inhibited && !self.is_enabled()
-    }
-
     /// Is the power stage on?
     pub fn is_enabled(&self) -> bool {
         let may = self.starts_until.is_none() && (self.alarm.is_none() || self.braking);
@@ -78,6 +73,17 @@ impl Servo {
     /// The alarm that stands.
     pub fn alarm(&self) -> Option<Trip> {
         self.alarm
+    }
+
+    /// What keeps the power stage off, while it is off.
+    pub fn why_off(&self) -> Ignored {
+        match () {
+            () if self.starts_until.is_some() => Ignored::NotReady,
+            () if self.alarm.is_some() => Ignored::Alarm,
+            () if self.released => Ignored::Released,
+            () if self.inhibited && (self.wanted || self.latched) => Ignored::Inhibited,
+            () => Ignored::PowerOff,
+        }
     }
 
     /// Is the power stage on for no more than the stop after an alarm?
@@ -112,9 +118,20 @@ impl Servo {
     }
 
     /// A command that asks for the power stage, or takes that back.
-    pub fn latch(&mut self, on: bool, tell: &mut impl FnMut(Change)) {
+    ///
+    /// # Errors
+    /// Why the power stage stays as it is.
+    pub fn latch(&mut self, on: bool, tell: &mut impl FnMut(Change)) -> Result<(), Ignored> {
+        let before = self.is_enabled();
         self.latched = on;
         self.settle(tell);
+        match (on, before, self.is_enabled()) {
+            (true, true, _) => Err(Ignored::AlreadyOn),
+            (true, false, false) => Err(self.why_off()),
+            (false, false, _) => Err(Ignored::AlreadyOff),
+            (false, true, true) => Err(Ignored::KeptOn),
+            (true, false, true) | (false, true, false) => Ok(()),
+        }
     }
 
     /// Trips; with `brakes` a power stage that is on stays on until [`Servo::braked`]. The first alarm stays
@@ -139,21 +156,49 @@ impl Servo {
         self.standing = standing;
     }
 
-    /// Clears the alarm if it can be cleared.
-    pub fn reset(&mut self, tell: &mut impl FnMut(Change)) {
-        self.clear(self.alarm.is_some_and(|trip| trip.resettable), tell);
+    /// Clears the alarm.
+    ///
+    /// # Errors
+    /// Why it stays, or that there is none.
+    pub fn reset(&mut self, tell: &mut impl FnMut(Change)) -> Result<(), Ignored> {
+        self.may_reset()?;
+        self.clear(tell);
+        Ok(())
     }
 
-    /// Clears the alarm if it was raised for `cause`, also one that no other reset clears.
-    pub fn reset_of(&mut self, cause: AlarmCause, tell: &mut impl FnMut(Change)) {
-        self.clear(self.alarm.is_some_and(|trip| trip.cause == cause), tell);
-    }
-
-    fn clear(&mut self, clears: bool, tell: &mut impl FnMut(Change)) {
-        let Some(Trip { cause, .. }) = self.alarm else { return };
-        if !clears || self.standing.has(cause) {
-            return tell(Change::AlarmStays { cause });
+    /// Clears the alarm that was raised for `cause`, also where no other reset clears it.
+    ///
+    /// # Errors
+    /// Why it stays, or that there is none.
+    pub fn reset_of(
+        &mut self,
+        cause: AlarmCause,
+        tell: &mut impl FnMut(Change),
+    ) -> Result<(), Ignored> {
+        match self.alarm.ok_or(Ignored::NoAlarm)?.cause {
+            other if other != cause => Err(Ignored::OtherAlarm(other)),
+            _ if self.standing.has(cause) => Err(Ignored::CauseStands(cause)),
+            _ => {
+                self.clear(tell);
+                Ok(())
+            }
         }
+    }
+
+    /// Would a reset clear the alarm?
+    ///
+    /// # Errors
+    /// Why not, or that there is none.
+    pub fn may_reset(&self) -> Result<(), Ignored> {
+        let Trip { cause, resettable, .. } = self.alarm.ok_or(Ignored::NoAlarm)?;
+        match () {
+            () if !resettable => Err(Ignored::NotResettable(cause)),
+            () if self.standing.has(cause) => Err(Ignored::CauseStands(cause)),
+            () => Ok(()),
+        }
+    }
+
+    fn clear(&mut self, tell: &mut impl FnMut(Change)) {
         (self.alarm, self.braking) = (None, false);
         tell(Change::AlarmCleared);
         self.settle(tell);
@@ -198,7 +243,7 @@ mod tests {
         let (servo, changes) = after(|servo, mut tell| {
             servo.want(true, false, &mut tell);
             servo.trip(FORCED, false, &mut tell);
-            servo.reset(&mut tell);
+            assert_eq!(servo.reset(&mut tell), Ok(()));
         });
         let alarm = Change::Alarm { cause: AlarmCause::Forced, code: 9 };
         let want = [
@@ -216,15 +261,16 @@ mod tests {
         let (servo, _) = after(|servo, mut tell| {
             servo.stand(AlarmCauses::default().with(AlarmCause::Forced, true));
             servo.trip(FORCED, false, &mut tell);
-            servo.reset(&mut tell);
+            let stands = Err(Ignored::CauseStands(AlarmCause::Forced));
+            assert_eq!(servo.reset(&mut tell), stands);
         });
         assert_eq!(servo.alarm(), Some(FORCED));
-        let (servo, changes) = after(|servo, mut tell| {
+        let (servo, _) = after(|servo, mut tell| {
             servo.trip(Trip { resettable: false, ..FORCED }, false, &mut tell);
-            servo.reset(&mut tell);
+            let fixed = Err(Ignored::NotResettable(AlarmCause::Forced));
+            assert_eq!(servo.reset(&mut tell), fixed);
         });
         assert!(servo.alarm().is_some());
-        assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
     }
 
     #[test]
@@ -232,13 +278,14 @@ mod tests {
         let (servo, changes) = after(|servo, mut tell| {
             servo.inhibit(true, &mut tell);
             servo.want(true, false, &mut tell);
-            assert!(!servo.is_enabled() && !servo.is_ready() && servo.is_inhibited());
+            assert!(!servo.is_enabled() && !servo.is_ready());
+            assert_eq!(servo.why_off(), Ignored::Inhibited);
             servo.inhibit(false, &mut tell);
             assert!(servo.is_enabled());
             servo.inhibit(true, &mut tell);
-            assert!(servo.is_enabled() && !servo.is_inhibited());
+            assert!(servo.is_enabled());
             servo.trip(FORCED, false, &mut tell);
-            servo.reset(&mut tell);
+            assert_eq!(servo.reset(&mut tell), Ok(()));
         });
         assert!(!servo.is_enabled());
         let enabled = changes.iter().filter(|it| matches!(it, Change::Enabled(_)));
@@ -277,16 +324,16 @@ mod tests {
     #[test]
     fn a_reset_of_one_cause_leaves_the_others() {
         let fixed = Trip { resettable: false, ..FORCED };
-        let (servo, changes) = after(|servo, mut tell| {
-            servo.reset_of(AlarmCause::Forced, &mut tell);
+        let (servo, _) = after(|servo, mut tell| {
+            assert_eq!(servo.reset_of(AlarmCause::Forced, &mut tell), Err(Ignored::NoAlarm));
             servo.trip(fixed, false, &mut tell);
-            servo.reset_of(AlarmCause::Encoder, &mut tell);
+            let other = Err(Ignored::OtherAlarm(AlarmCause::Forced));
+            assert_eq!(servo.reset_of(AlarmCause::Encoder, &mut tell), other);
         });
         assert_eq!(servo.alarm(), Some(fixed));
-        assert_eq!(changes.last(), Some(&Change::AlarmStays { cause: AlarmCause::Forced }));
         let (servo, _) = after(|servo, mut tell| {
             servo.trip(fixed, false, &mut tell);
-            servo.reset_of(AlarmCause::Forced, &mut tell);
+            assert_eq!(servo.reset_of(AlarmCause::Forced, &mut tell), Ok(()));
         });
         assert_eq!(servo.alarm(), None);
     }

@@ -2,11 +2,13 @@
 
 use super::Drive;
 use crate::behaviour::{HomeOrder, Stage};
-use crate::event::{Change, Ignored};
+use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Choice, Finish, Homing};
 use crate::motion::Index;
 use crate::time::Duration;
-use crate::words::{Action, AlarmCause, HomeEnd, HomeStarter, OriginPosition, RowId, Setting};
+use crate::words::{
+    Action, AlarmCause, HomeEnd, HomeStarter, Input, OriginPosition, RowId, Setting,
+};
 
 /// What happens at the origin where a model says nothing.
 const FINISH: Finish = Finish { go: false, position: OriginPosition::Zero, of_origin: false };
@@ -19,14 +21,20 @@ impl Drive {
     pub(super) fn home(&mut self, starter: HomeStarter) -> Result<(), Ignored> {
         let model = self.model.clone();
         let Some(homing) = &model.wiring.homing else { return Err(Ignored::NoMeaning) };
-        if homing.starter.is_some() && self.home_starter() != Some(starter) {
-            return Err(Ignored::Starter);
+        if let Some(row) = homing.starter.as_ref().map(|it| it.row)
+            && self.home_starter() != Some(starter)
+        {
+            return Err(Ignored::Starter { row, value: self.bank.value(&model, row) });
         }
         let number = match homing.method {
             Some(row) => Some(self.bank.value(&model, row)),
             None => homing.methods.keys().next().copied(),
         };
         let number = number.ok_or(Ignored::NoMeaning)?;
+        let unsupported = homing.method.filter(|_| !homing.methods.contains_key(&number));
+        if let Some(row) = unsupported {
+            return Err(Ignored::Unsupported { row, value: number });
+        }
         let order = self.home_order(homing, number).ok_or(Ignored::NoMeaning)?;
         self.motor.start_home(self.now, order)?;
         (self.method, self.home_done) = (number, false);
@@ -44,12 +52,21 @@ impl Drive {
         }
     }
 
+    /// May an input signal start a homing?
+    pub(super) fn may_home_by_input(&self) -> bool {
+        let homing = self.model.wiring.homing.as_ref();
+        let starter = homing.and_then(|homing| homing.starter.as_ref());
+        starter.is_none() || self.home_starter() == Some(HomeStarter::Input)
+    }
+
     /// Looks for the origin, or tells why not.
     pub(super) fn home_by(&mut self, starter: HomeStarter) {
         let done = self.home(starter);
         self.tell_stages(None);
-        if let Err(why) = done {
-            self.changes.push_back(Change::Ignored { action: Action::HomeStart, why });
+        match (starter, done) {
+            (HomeStarter::Input, done) => self.heed(Input::HomeStart, done),
+            (_, Err(why)) => self.ignore(Ordered::Action(Action::HomeStart), why),
+            (_, Ok(())) => {}
         }
         self.settle();
     }

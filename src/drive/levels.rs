@@ -30,6 +30,18 @@ pub(super) struct Velocity {
 }
 
 impl Level {
+    /// The signal that asks for it.
+    pub(super) fn input(self) -> Input {
+        match (self.kind, self.reverse) {
+            (LevelKind::Jog, false) => Input::JogPos,
+            (LevelKind::Jog, true) => Input::JogNeg,
+            (LevelKind::Inch, false) => Input::InchPos,
+            (LevelKind::Inch, true) => Input::InchNeg,
+            (LevelKind::Run, _) => Input::Run,
+            (LevelKind::Velocity(_), _) => Input::SegmentRun,
+        }
+    }
+
     /// The velocity segment that it asks for.
     pub(super) fn segment(self) -> Option<u16> {
         match self.kind {
@@ -102,7 +114,8 @@ impl Drive {
         segments.get(number).map(|_| Velocity { number, by_edge })
     }
 
-    fn level(&self) -> Option<Level> {
+    /// What levels ask for, if they ask for one thing.
+    pub(super) fn level(&self) -> Option<Level> {
         let has = |input| self.inputs.has(input);
         let velocity = self.velocity.map(|it| {
             let kind = LevelKind::Velocity(it.number);

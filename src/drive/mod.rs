@@ -12,6 +12,7 @@ mod home;
 mod levels;
 mod memory;
 mod motion;
+mod no_effect;
 mod not_simulated;
 mod react;
 mod segments;
@@ -26,7 +27,7 @@ pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
 use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Wants};
-use crate::event::{Change, Ignored};
+use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
 use crate::time::Instant;
@@ -35,6 +36,8 @@ use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
 use levels::{Level, Velocity};
 use memory::Memory;
+use no_effect::NoEffect;
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use troubles::Troubles;
@@ -94,6 +97,8 @@ pub struct Drive {
     never_enabled: bool,
     /// What the position is called whenever power comes on: there is no absolute encoder.
     position_at_power_on: i64,
+    /// What was told of orders that have no effect.
+    no_effect: NoEffect,
     /// Functions that are not simulated and of which the log has told since power came on, as bits by index.
     told_not_simulated: u64,
     changes: VecDeque<Change>,
@@ -132,6 +137,7 @@ impl Drive {
             home_done: false,
             method: 0,
             never_enabled: true,
+            no_effect: NoEffect::new(&model.wiring),
             model,
             station: setup.station,
             now,
@@ -208,8 +214,13 @@ impl Drive {
     /// Returns whether it has.
     pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
         self.advance_to(now);
+        let had_one = self.servo.alarm().is_some();
         let tripped = self.trip(cause);
+        if tripped && had_one {
+            self.ignore(Ordered::Raise(cause), Ignored::Alarm);
+        }
         self.settle();
+        self.explain();
         tripped
     }
 
@@ -217,11 +228,18 @@ impl Drive {
     pub fn set_terminal(&mut self, now: Instant, index: u8, signal: bool) {
         self.advance_to(now);
         let bit = 1 << index;
-        if (self.terminals & bit != 0) != signal {
-            self.terminals ^= bit;
-            self.changes.push_back(Change::Terminal { index, signal });
-            self.gather_inputs();
+        let order = Ordered::Terminal { index, on: signal };
+        if (self.terminals & bit != 0) == signal {
+            return self.ignore(order, Ignored::AlreadySo);
         }
+        self.terminals ^= bit;
+        self.changes.push_back(Change::Terminal { index, signal });
+        let before = self.inputs;
+        self.gather_inputs();
+        if let Some(why) = self.why_no_signal(index, before) {
+            self.ignore(order, why);
+        }
+        self.explain();
     }
 
     /// Power off and on. What moved stands.
@@ -279,6 +297,7 @@ impl Drive {
             self.end_silence();
             self.settle();
             self.advance_chain();
+            self.explain();
         }
         self.now = self.now.max(now);
     }
@@ -298,9 +317,14 @@ impl Drive {
 
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
         let plan = self.bank.plan_read(&self.model, span)?;
-        let mut read = self.read;
-        let len = plan.read(&self.bank, &self.model, |row| self.show(row), &mut read);
+        let (mut read, dark) = (self.read, Cell::new(0));
+        let show = |row| {
+            self.dark_word(row).into_iter().for_each(|word| dark.set(dark.get() | 1 << word));
+            self.show(row)
+        };
+        let len = plan.read(&self.bank, &self.model, show, &mut read);
         self.read = read;
+        self.look_at_dark(dark.into_inner());
         Ok(Response::Read(&self.read[..len]))
     }
 
@@ -371,6 +395,7 @@ impl Drive {
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
         self.settle();
+        self.begin_explaining();
     }
 
     /// A power stage without supply, as good as one that is not ready yet.
@@ -401,32 +426,26 @@ impl Drive {
         Some(Mode { ascii, settings: Settings { baud, format } })
     }
 
-    /// Carries out `action`. Returns whether the drive obeys.
-    fn act(&mut self, action: Action, modifiers: Modifiers) -> bool {
+    /// Carries out `action`.
+    ///
+    /// # Errors
+    /// Why it has no effect.
+    fn act(&mut self, action: Action, modifiers: Modifiers) -> Result<(), Ignored> {
         if self.waits_for_rest(action) {
-            self.changes.push_back(Change::Ignored { action, why: Ignored::Moving });
-            return false;
+            return Err(Ignored::Moving);
         }
-        let mut obeyed = true;
+        let mut done = Ok(());
         let tell = &mut |change| self.changes.push_back(change);
         match action {
             Action::QuickStop
             | Action::Stop
             | Action::HomeStart
             | Action::MoveStart
-            | Action::RunStart => {
-                obeyed = self.order(action, modifiers);
-            }
-            Action::Enable => {
-                self.servo.latch(true, tell);
-                if self.servo.is_inhibited() {
-                    obeyed = false;
-                    self.changes.push_back(Change::Ignored { action, why: Ignored::Inhibited });
-                }
-            }
-            Action::Release => self.servo.latch(false, tell),
-            Action::AlarmReset => self.servo.reset(tell),
-            Action::EncoderReset => self.servo.reset_of(AlarmCause::Encoder, tell),
+            | Action::RunStart => done = self.order(action, modifiers),
+            Action::Enable => done = self.servo.latch(true, tell),
+            Action::Release => done = self.servo.latch(false, tell),
+            Action::AlarmReset => done = self.servo.reset(tell),
+            Action::EncoderReset => done = self.servo.reset_of(AlarmCause::Encoder, tell),
             Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
                 self.zero = self.seen_position();
@@ -454,6 +473,6 @@ impl Drive {
             Action::PowerCycle => self.restart = true,
         }
         self.settle();
-        obeyed
+        done
     }
 }

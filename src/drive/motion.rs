@@ -3,7 +3,7 @@
 
 use super::Drive;
 use crate::behaviour::{Control, Stage, Wants};
-use crate::event::Change;
+use crate::event::{Change, Ignored};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
 use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
@@ -131,8 +131,11 @@ impl Drive {
         self.tell_stages(None);
     }
 
-    /// Carries out an order to the axis. Returns whether it obeys.
-    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) -> bool {
+    /// Carries out an order to the axis.
+    ///
+    /// # Errors
+    /// Why it has no effect.
+    pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) -> Result<(), Ignored> {
         let (now, model) = (self.now, self.model.clone());
         let rows = &model.wiring.axis.settings;
         let done = match action {
@@ -146,22 +149,19 @@ impl Drive {
                 self.motor.start_run(now, ramp)
             }
             Action::HomeStart => self.home(HomeStarter::Command),
-            Action::QuickStop => {
-                self.chain.end();
-                self.motor.quick_stop(now);
-                Ok(())
-            }
             _ => {
+                let at_once = action == Action::QuickStop;
+                let why = self.why_no_stop(at_once);
                 self.chain.end();
-                self.motor.stop(now);
-                Ok(())
+                match at_once {
+                    true => self.motor.quick_stop(now),
+                    false => self.motor.stop(now),
+                }
+                why.map_or(Ok(()), Err)
             }
         };
         self.tell_stages(None);
-        if let Err(why) = done {
-            self.changes.push_back(Change::Ignored { action, why });
-        }
-        done.is_ok()
+        done
     }
 
     /// Is `action` one that needs an axis at rest, while it moves?

@@ -1,7 +1,7 @@
 //! Functions that nothing emulates: the first time that one is asked for after power-on, the log says so.
 
 use super::Drive;
-use crate::event::Change;
+use crate::event::{Ignored, Ordered};
 
 impl Drive {
     /// Tells of what is asked for and not simulated, once each.
@@ -14,7 +14,7 @@ impl Drive {
         self.told_not_simulated |= asked;
         while new != 0 {
             let function = new.trailing_zeros() as u8;
-            self.changes.push_back(Change::NotSimulated { function });
+            self.ignore(Ordered::Function(function), Ignored::NotSimulated);
             new &= new - 1;
         }
     }

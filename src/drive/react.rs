@@ -2,7 +2,7 @@
 
 use super::{Drive, Given};
 use crate::bank::WritePlan;
-use crate::event::Change;
+use crate::event::{Change, Ignored, Ordered};
 use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
 use crate::words::{Action, Modifiers, RowId};
@@ -38,13 +38,15 @@ impl Drive {
         for (row, raw) in plan.values() {
             match self.model.wiring.reaction(row) {
                 Reaction::Command(index) => self.command(index, row, raw),
-                Reaction::Trigger(index) => self.trigger(index, raw),
+                Reaction::Trigger(index) => self.trigger(index, row, raw),
                 _ => {}
             }
             if self.model.map.row(row).clears {
                 self.bank.set(row, self.at_work(row).unwrap_or(0));
             }
         }
+        self.look_at_stored(plan);
+        self.explain();
     }
 
     /// Lets input words fall back that were not refreshed in time.
@@ -81,30 +83,50 @@ impl Drive {
     fn command(&mut self, index: u16, row: RowId, raw: u32) {
         let value = self.model.map.row(row).kind.value(raw);
         let actions = &self.model.wiring.commands[usize::from(index)].actions;
-        if let Some((_, action)) = actions.iter().find(|(it, _)| *it == value) {
-            self.give(*action, Modifiers::default());
+        match actions.iter().find(|(it, _)| *it == value) {
+            Some((_, action)) => self.give(*action, Modifiers::default()),
+            // 0 is what such a row says while nothing is asked of it.
+            None if value == 0 => {}
+            None => self.ignore(Ordered::Write { row, value }, Ignored::Nothing),
         }
     }
 
-    fn trigger(&mut self, index: u16, raw: u32) {
-        let triggers = &self.model.wiring.triggers[usize::from(index)];
+    fn trigger(&mut self, index: u16, row: RowId, raw: u32) {
+        let model = self.model.clone();
+        let triggers = &model.wiring.triggers[usize::from(index)];
         let is_set = |bit: u8| raw >> bit & 1 != 0;
         let mut modifiers = Modifiers::default();
-        triggers
-            .modifiers
-            .iter()
-            .filter(|(bit, _)| is_set(*bit))
-            .for_each(|(_, it)| modifiers.insert(*it));
-        if let Some((_, action)) = triggers.actions.iter().find(|(bit, _)| is_set(*bit)) {
-            self.give(*action, modifiers);
+        let mut orders = triggers.actions.iter().filter(|(bit, _)| is_set(*bit));
+        let first = orders.next().map(|(_, action)| *action);
+        for (_, modifier) in triggers.modifiers.iter().filter(|(bit, _)| is_set(*bit)) {
+            modifiers.insert(*modifier);
+        }
+        if let Some(action) = first {
+            self.give(action, modifiers);
+            orders.for_each(|(_, it)| self.ignore(Ordered::Action(*it), Ignored::After(action)));
+        }
+        for bit in (0..32u8).filter(|bit| is_set(*bit)) {
+            let is_modifier = triggers.modifiers.iter().any(|(it, _)| *it == bit);
+            let is_order = triggers.actions.iter().any(|(it, _)| *it == bit);
+            let why = match first {
+                _ if is_order => continue,
+                _ if !is_modifier => Ignored::Nothing,
+                None => Ignored::NoOrder,
+                Some(Action::MoveStart) => continue,
+                Some(_) => Ignored::MovesOnly,
+            };
+            self.ignore(Ordered::Bit { row, bit, on: true }, why);
         }
     }
 
     /// Carries out what a master orders, and keeps in mind what a second time would add to.
     fn give(&mut self, action: Action, modifiers: Modifiers) {
-        let obeyed = self.act(action, modifiers);
+        let done = self.act(action, modifiers);
         if action.adds_up(modifiers) {
-            self.given = Some(Given { action, obeyed });
+            self.given = Some(Given { action, obeyed: done.is_ok() });
+        }
+        if let Err(why) = done {
+            self.ignore(Ordered::Action(action), why);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Drive;
 use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
-use crate::event::{Change, Ignored};
+use crate::event::{Change, Ignored, Ordered};
 use crate::model::{ChainRules, Link};
 use crate::time::Duration;
 use crate::words::{Condition, Input, Inputs, Lasts, RowId, Setting, Target};
@@ -18,9 +18,7 @@ impl Drive {
                 Input::SegmentStep => self.step_chain(),
                 _ => self.start_velocity_segment(),
             };
-            if let Err(why) = started {
-                self.changes.push_back(Change::InputIgnored { input, why });
-            }
+            self.heed(input, started);
             self.settle();
         }
     }
@@ -72,8 +70,7 @@ impl Drive {
             Ok(()) => self.settle(),
             Err(why) => {
                 self.chain.end();
-                let input = Input::SegmentStart;
-                self.changes.push_back(Change::InputIgnored { input, why });
+                self.ignore(Ordered::Input(Input::SegmentStart), why);
             }
         }
     }
@@ -117,7 +114,9 @@ impl Drive {
     }
 
     fn step_chain(&mut self) -> Result<(), Ignored> {
-        self.chain.step(self.now);
+        if !self.chain.step(self.now) {
+            return Err(Ignored::NoChain);
+        }
         self.advance_chain();
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Input signals gathered from terminals, words and bits; output signals told from the state.
 
 use super::Drive;
-use crate::event::{Change, Ignored};
+use crate::event::{Ignored, Ordered};
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
 use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
@@ -14,27 +14,44 @@ impl Drive {
         }
         let now = self.active_inputs();
         let before = std::mem::replace(&mut self.inputs, now);
+        let risen = now.risen_since(before);
+        self.look_at_inputs(before);
+        self.look_at_what_is_so(risen);
         if now.has(Input::AlarmForce) {
             self.trip(AlarmCause::Forced);
         }
         self.uphold_causes();
-        let tell = &mut |change| self.changes.push_back(change);
-        if now.risen_since(before).has(Input::AlarmReset) {
-            self.servo.reset(tell);
+        if risen.has(Input::AlarmReset) {
+            let done = self.servo.reset(&mut |change| self.changes.push_back(change));
+            self.heed(Input::AlarmReset, done);
         }
+        let tell = &mut |change| self.changes.push_back(change);
         self.servo.inhibit(now.has(Input::EnableInhibit), tell);
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
-        if now.risen_since(before).has(Input::ServoOn) && self.servo.is_inhibited() {
-            let (input, why) = (Input::ServoOn, Ignored::Inhibited);
-            self.changes.push_back(Change::InputIgnored { input, why });
-        }
         self.select_velocity();
         self.settle();
-        if now.risen_since(before).has(Input::HomeStart) {
+        if risen.has(Input::HomeStart) {
             self.home_by(HomeStarter::Input);
         }
-        self.start_by_inputs(now.risen_since(before));
+        self.start_by_inputs(risen);
         self.tell_not_simulated();
+    }
+
+    /// Tells of signals that ask for what is so already.
+    fn look_at_what_is_so(&mut self, risen: Inputs) {
+        let enabled = self.servo.is_enabled();
+        let so = [
+            (Input::ServoOn, enabled.then_some(Ignored::AlreadyOn)),
+            (Input::Release, (!enabled).then_some(Ignored::AlreadyOff)),
+            (Input::AlarmForce, self.servo.alarm().map(|_| Ignored::Alarm)),
+            (Input::Stop, self.why_no_stop(false)),
+            (Input::QuickStop, self.why_no_stop(true)),
+        ];
+        for (input, why) in so {
+            if let Some(why) = why.filter(|_| risen.has(input)) {
+                self.ignore(Ordered::Input(input), why);
+            }
+        }
     }
 
     /// The output signals, right now.
@@ -212,9 +229,16 @@ impl Drive {
 
     /// Is the signal of this bit somebody else's?
     fn is_claimed(&self, row: RowId, bit: u8) -> bool {
+        self.claimed_by(row, bit).is_some()
+    }
+
+    /// The setting that gives the signal of this bit to somebody else.
+    pub(super) fn claimed_by(&self, row: RowId, bit: u8) -> Option<RowId> {
         let mut claims =
             self.model.wiring.claims.iter().filter(|it| (it.row, it.bit) == (row, bit));
-        claims.any(|claim| claim.by.of(self.bank.value(&self.model, claim.by.row)) != 0)
+        let claim =
+            claims.find(|claim| claim.by.of(self.bank.value(&self.model, claim.by.row)) != 0);
+        claim.map(|claim| claim.by.row)
     }
 
     fn normally_closed<S>(&self, terminals: &Terminals<S>) -> u32 {

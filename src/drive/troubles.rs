@@ -68,6 +68,7 @@ impl Drive {
             self.tell_stages(None);
             self.gather_inputs();
             self.settle();
+            self.explain();
         }
         true
     }
@@ -83,6 +84,11 @@ impl Drive {
         let edges = u32::from(times) * 2;
         self.troubles.bounces.push(Bounce { bit, index, edges, every, next: now });
         self.advance_to(now);
+    }
+
+    /// Is the contact on input terminal `index` stuck?
+    pub(super) fn is_stuck(&self, index: u8) -> bool {
+        self.has_trouble(Trouble::Stuck(index))
     }
 
     /// Where the axis seems to be, in the machine's coordinate.

@@ -1,7 +1,7 @@
 //! The log for programs: one JSON object an event.
 
 use super::rows::{self, Item};
-use super::{text, why};
+use super::{no_effect, text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
@@ -169,7 +169,6 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Enabled(on) => ("servo", json!({"on": on})),
         Change::Alarm { cause, code } => ("alarm", json!({"cause": cause.name(), "code": code})),
         Change::AlarmCleared => ("alarm_cleared", json!({})),
-        Change::AlarmStays { cause } => ("alarm_stays", json!({"cause": cause.name()})),
         Change::AlarmHistoryCleared => ("alarm_history_cleared", json!({})),
         Change::WordExpired { word, hold, held_ms } => {
             let map = &drive.model().map;
@@ -232,15 +231,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::HomingLost { method, why } => {
             ("homing_lost", json!({"method": method, "why": why.name()}))
         }
-        Change::Ignored { action, why } => {
-            ("ignored", json!({"action": action.name(), "why": why::ignored(*why)}))
-        }
-        Change::InputIgnored { input, why } => {
-            ("input_ignored", json!({"input": input.name(), "why": why::ignored(*why)}))
-        }
-        Change::NotSimulated { function } => {
-            ("not_simulated", json!({"function": rows::not_simulated(drive, *function)}))
-        }
+        Change::NoEffect { order, why } => ("no_effect", no_effect::fields(drive, *order, *why)),
         Change::Trouble { trouble, on } => {
             let more = match trouble {
                 Trouble::Cause(cause) => json!({"trouble": "cause", "cause": cause.name()}),
@@ -266,7 +257,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
     (kind, fields)
 }
 
-fn merge(into: &mut Value, more: Value) {
+pub(super) fn merge(into: &mut Value, more: Value) {
     if let (Value::Object(into), Value::Object(more)) = (into, more) {
         into.extend(more);
     }

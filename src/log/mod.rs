@@ -5,6 +5,7 @@
 
 #[cfg(feature = "cli")]
 pub mod json;
+mod no_effect;
 mod rows;
 pub mod text;
 mod why;

@@ -1,6 +1,6 @@
 //! The log for reading over a coffee: one line an event.
 
-use super::{rows, why};
+use super::{no_effect, rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
@@ -181,9 +181,6 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::Enabled(false) => "servo off".into(),
         Change::Alarm { cause, code } => format!("alarm {code}: {}", cause.about()),
         Change::AlarmCleared => "alarm cleared".into(),
-        Change::AlarmStays { cause } => {
-            format!("alarm reset without effect: {}", cause.about())
-        }
         Change::AlarmHistoryCleared => "alarm history cleared".into(),
         Change::WordExpired { word, hold, held_ms } => {
             let map = &drive.model().map;
@@ -262,15 +259,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::HomingLost { method, why } => {
             format!("homing method {method} ended without an origin: {}", why.about())
         }
-        Change::Ignored { action, why } => {
-            format!("{} ignored: {}", action.name(), why::ignored(*why))
-        }
-        Change::InputIgnored { input, why } => {
-            format!("input {} ignored: {}", input.name(), why::ignored(*why))
-        }
-        Change::NotSimulated { function } => {
-            format!("{}: not simulated", rows::not_simulated(drive, *function))
-        }
+        Change::NoEffect { order, why } => no_effect::text(drive, *order, *why),
         Change::Trouble { trouble, on } => trouble_text(drive, *trouble, *on),
         Change::Bounces { index, times, every } => {
             let (name, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);

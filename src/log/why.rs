@@ -2,7 +2,6 @@
 
 use super::rows::label;
 use crate::drive::Drive;
-use crate::event::Ignored;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
@@ -36,21 +35,6 @@ pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
         }
         (_, Detail::Value { row, .. }) => map.row(row).admits_text(),
         (cause, detail) => format!("{cause:?} {detail:?}"),
-    }
-}
-
-/// Why an order did nothing.
-pub fn ignored(why: Ignored) -> &'static str {
-    match why {
-        Ignored::PowerOff => "the servo is off",
-        Ignored::Inhibited => "a signal inhibits it",
-        Ignored::Held => "a stop input is active",
-        Ignored::Moving => "the axis moves",
-        Ignored::Homing => "the axis looks for its origin",
-        Ignored::Limit => "there is a limit in that direction",
-        Ignored::Starter => "the parameter says that something else starts it, or nothing does",
-        Ignored::NoMeaning => "a parameter holds a number that stands for nothing",
-        Ignored::NoSegment => "there is no such segment",
     }
 }
 

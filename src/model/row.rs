@@ -239,13 +239,17 @@ impl Row {
         self.spans.iter().any(|(low, high)| (*low..=*high).contains(&value))
     }
 
-    /// How people call it: the manual's code and name, or the address where the manual has no code.
-    pub fn label(&self) -> String {
-        let own_word = self.id.starts_with(|c: char| c.is_ascii_lowercase());
-        match own_word {
-            true => format!("0x{:04X} {}", self.at, self.name),
-            false => format!("{} {}", self.id, self.name),
+    /// The manual's code, or the address where the manual has no code.
+    pub fn code(&self) -> String {
+        match self.id.starts_with(|c: char| c.is_ascii_lowercase()) {
+            true => format!("0x{:04X}", self.at),
+            false => self.id.clone(),
         }
+    }
+
+    /// How people call it: its code and its name.
+    pub fn label(&self) -> String {
+        format!("{} {}", self.code(), self.name)
     }
 
     /// Its range as people write it: `0..6000`, `-4..-1, 1..14`.

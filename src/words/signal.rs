@@ -1,6 +1,6 @@
 //! Named bits into and out of a drive.
 
-use super::words;
+use super::{Word, words};
 
 words! {
     /// A signal into the drive. Active while any of its sources is.
@@ -89,6 +89,11 @@ impl Inputs {
     /// Makes `signal` active.
     pub fn insert(&mut self, signal: Input) {
         self.0 |= 1 << signal as u8;
+    }
+
+    /// The signals that are active, in the order of the catalogue.
+    pub fn iter(self) -> impl Iterator<Item = Input> {
+        Input::ALL.iter().copied().filter(move |signal| self.has(*signal))
     }
 
     /// Signals active here and not in `before`.

@@ -137,11 +137,12 @@ fn the_log_tells_of_motions() {
     rig.advance(second);
     give(&mut rig, Action::Release);
     rig.advance(second);
-    let told = told(&rig, &["moves", "runs", "jogs", "stops", "coasts", "stands", "ignored"]);
+    let told = told(&rig, &["moves", "runs", "jogs", "stops", "coasts", "stands", "no_effect"]);
     let want = [
-        "ignored | run_start | the servo is off | unit 5 run_start ignored: the servo is off",
+        "no_effect | run_start | the servo is off | unit 5 run_start has no effect: the servo is off",
         "moves | 200000 | unit 5 moves to 200000",
         "stands | 200000 | unit 5 stands at 200000",
+        "no_effect | quick_stop | already stopped | unit 5 quick_stop has no effect: already stopped",
         "runs | 60.0 | unit 5 runs at 60 rpm",
         "stops | unit 5 stops",
         "stands | 331072 | unit 5 stands at 331072",

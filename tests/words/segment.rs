@@ -59,9 +59,9 @@ fn the_log_tells_of_segments() {
     chain(&mut rig, 3, 4);
     rig.advance(Duration::from_secs(1));
     by_bit(&mut rig, Input::SegmentRun, true);
-    let kinds = ["position_segment", "velocity_segment", "chain_step", "input_ignored"];
+    let kinds = ["position_segment", "velocity_segment", "chain_step", "no_effect"];
     let want = [
-        "input_ignored | segment_start | the servo is off | unit 5 input segment_start ignored: the servo is off",
+        "no_effect | segment_start | the servo is off | unit 5 segment_start has no effect: the servo is off",
         "position_segment | 16 | 40000 | unit 5 position segment 16 to 40000",
         "chain_step | 16 | 17 | the position is reached | unit 5 segment 16 goes on with segment 17: the position is reached",
         "position_segment | 17 | -5000 | unit 5 position segment 17 to -5000",

@@ -1,0 +1,392 @@
+//! Orders that have no effect: the log says why, once.
+//!
+//! An action or a rising edge that comes to nothing is told of when it comes ([`Drive::ignore`]). A level that is
+//! active and does nothing is told of when it rises, and again when the reason changes; so is an edge that came too
+//! early, once it would act if it came anew ([`Drive::explain`]). A bit that does not reach its signal is told of when
+//! it is set. Nothing is told again because a master writes it again.
+
+use super::Drive;
+use crate::bank::WritePlan;
+use crate::event::{Change, Ignored, Ordered};
+use crate::model::{Shows, Wiring};
+use crate::time::Instant;
+use crate::words::{Input, Inputs, Lasts, RowId, Word};
+
+const INPUTS: usize = Input::ALL.len();
+
+/// What has been told.
+#[derive(Debug)]
+pub(super) struct NoEffect {
+    /// What became of each input signal that is active.
+    inputs: [Active; INPUTS],
+    /// Bits that are set, by source: input words first, then rows of input bits.
+    sources: Box<[Bits]>,
+    /// Output words that nothing was enabled of when they were read.
+    dark: u16,
+    /// Rows that are only stored and have been written, a bit each.
+    stored: Box<[u64]>,
+}
+
+/// An input signal that is active.
+#[derive(Debug, Clone, Copy, Default)]
+struct Active {
+    since: Instant,
+    told: Told,
+}
+
+/// What was told of an active signal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Told {
+    /// Nothing yet.
+    #[default]
+    Nothing,
+    /// It acts, or has acted.
+    Acts,
+    /// Why it does not.
+    Why(Ignored),
+}
+
+/// Bits of a row that are set.
+#[derive(Debug, Clone, Copy, Default)]
+struct Bits {
+    /// Those that make their signals active.
+    reach: u16,
+    /// Those that something keeps from it.
+    kept: u16,
+    /// Those that stand for nothing.
+    idle: u16,
+    /// Those, set or not, of which something is to be told.
+    untold: u16,
+}
+
+/// How an input signal acts.
+enum Acts {
+    /// While active. Why it does not, if it does not.
+    Level(Option<Ignored>),
+    /// When it rises. Why it could not, if it rose now.
+    Edge(Option<Ignored>),
+    /// In a way that is told when it rises, or by itself not at all.
+    Other,
+}
+
+impl NoEffect {
+    /// Nothing has been told.
+    pub(super) fn new(wiring: &Wiring) -> Self {
+        let words = wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
+        Self {
+            inputs: [Active::default(); INPUTS],
+            sources: vec![Bits::default(); words + wiring.input_bits.len()].into(),
+            dark: 0,
+            stored: vec![0; wiring.shows.len().div_ceil(64)].into(),
+        }
+    }
+}
+
+impl Drive {
+    /// Tells of an order that has no effect. What the axis says of the power stage is traced to what keeps that off.
+    pub(super) fn ignore(&mut self, order: Ordered, why: Ignored) {
+        let why = self.root_of(why);
+        self.changes.push_back(Change::NoEffect { order, why });
+    }
+
+    /// Tells of an input signal that rose and has no effect, if it has none.
+    pub(super) fn heed(&mut self, input: Input, done: Result<(), Ignored>) {
+        let told = match done {
+            Ok(()) => Told::Acts,
+            Err(why) => {
+                self.ignore(Ordered::Input(input), why);
+                Told::Why(self.root_of(why))
+            }
+        };
+        self.no_effect.inputs[input as usize].told = told;
+    }
+
+    /// What was active before power came on is nobody's order.
+    pub(super) fn begin_explaining(&mut self) {
+        self.no_effect.inputs = [Active { since: self.now, told: Told::Nothing }; INPUTS];
+        for input in Input::ALL {
+            let told = match self.acts(*input) {
+                Acts::Level(why) => why.map_or(Told::Acts, Told::Why),
+                Acts::Edge(_) => Told::Why(Ignored::PowerOff),
+                Acts::Other => Told::Acts,
+            };
+            self.no_effect.inputs[*input as usize].told = told;
+        }
+        for source in 0..self.no_effect.sources.len() {
+            self.no_effect.sources[source] = self.bits_of(source);
+        }
+    }
+
+    /// Looks at the signals that have risen, while `before` were active.
+    pub(super) fn look_at_inputs(&mut self, before: Inputs) {
+        let (now, inputs) = (self.now, self.inputs);
+        for input in inputs.risen_since(before).iter() {
+            self.no_effect.inputs[input as usize] = Active { since: now, told: Told::Nothing };
+        }
+        self.look_at_bits(before);
+    }
+
+    /// Looks at active signals that have no effect. To be called when everything that came at one instant has been
+    /// done.
+    pub(super) fn explain(&mut self) {
+        if !self.powered {
+            return;
+        }
+        for input in self.inputs.iter() {
+            let Active { since, told } = self.no_effect.inputs[input as usize];
+            let told = match (self.acts(input), told) {
+                (Acts::Other, told) => told,
+                (Acts::Level(None), _) => Told::Acts,
+                (Acts::Level(Some(why)), told) => {
+                    let known = told == Told::Why(why);
+                    let shown = told == Told::Acts && why.shows_itself();
+                    if !known && !shown && !self.is_older(input, why) {
+                        self.ignore(Ordered::Input(input), why);
+                    }
+                    Told::Why(why)
+                }
+                // What it has started is over: from now on it takes another edge.
+                (Acts::Edge(Some(why)), Told::Acts) if why.ends_motions() => Told::Why(why),
+                (Acts::Edge(None), Told::Why(why)) if why.passes() => {
+                    let why = Ignored::NoEdge { since };
+                    self.ignore(Ordered::Input(input), why);
+                    Told::Why(why)
+                }
+                (Acts::Edge(_), told) => told,
+            };
+            self.no_effect.inputs[input as usize].told = told;
+        }
+        self.explain_bits();
+    }
+
+    /// Of signals that contradict each other only the last is told of.
+    fn is_older(&self, input: Input, why: Ignored) -> bool {
+        let age = |input: Input| (self.no_effect.inputs[input as usize].since, input);
+        let mut others = self.inputs.iter().filter(|other| asks_for_run(*other));
+        why == Ignored::Contradiction && others.any(|other| age(other) > age(input))
+    }
+
+    fn acts(&self, input: Input) -> Acts {
+        let start = || self.motor.may_start(false).err().map(|why| self.root_of(why));
+        match input {
+            Input::ServoOn => Acts::Level((!self.servo.is_enabled()).then(|| self.servo.why_off())),
+            Input::SegmentRun if self.velocity_lasts() == Some(Lasts::Edge) => Acts::Edge(start()),
+            Input::HomeStart if !self.may_home_by_input() => Acts::Other,
+            Input::MoveStart | Input::SegmentStart | Input::HomeStart => Acts::Edge(start()),
+            Input::AlarmReset => Acts::Edge(self.servo.may_reset().err()),
+            _ if asks_for_run(input) => Acts::Level(self.why_no_run(input)),
+            _ => Acts::Other,
+        }
+    }
+
+    /// Why the run that `input` asks for is not under way, if it is not.
+    fn why_no_run(&self, input: Input) -> Option<Ignored> {
+        if self.motor.is_jogging() && self.run.is_some_and(|(level, _)| level.input() == input) {
+            return None;
+        }
+        match self.motor.may_start(false) {
+            Err(Ignored::Moving) if self.motor.is_slowing() => {}
+            Err(Ignored::Moving) if self.motor.is_jogging() => {}
+            Err(why) => return Some(self.root_of(why)),
+            Ok(()) => {}
+        }
+        let Some(level) = self.level() else {
+            let alone = input == Input::SegmentRun && self.velocity.is_none();
+            return Some(if alone { Ignored::NoSegment } else { Ignored::Contradiction });
+        };
+        if level.input() != input {
+            return Some(Ignored::Moving);
+        }
+        let Some((_, ramp)) = self.wanted_run() else { return Some(Ignored::NoSpeed) };
+        if self.motor.is_jog_spent() {
+            return Some(Ignored::Spent);
+        }
+        self.motor.may_go(self.now, ramp.speed).err()
+    }
+
+    /// The reason behind `why`: what keeps the power stage off, what an alarm stops.
+    fn root_of(&self, why: Ignored) -> Ignored {
+        match why {
+            Ignored::PowerOff => self.servo.why_off(),
+            Ignored::Held if self.servo.is_braking() => Ignored::Alarm,
+            why => why,
+        }
+    }
+
+    /// Why an order to stop has no effect, if it has none; one that stops `at_once` also ends a ramp.
+    pub(super) fn why_no_stop(&self, at_once: bool) -> Option<Ignored> {
+        let slowing = self.motor.is_slowing();
+        match () {
+            () if self.chain.is_under_way() => None,
+            () if !self.motor.is_moving() => Some(Ignored::AlreadyStopped),
+            () if slowing && !(at_once && self.servo.is_enabled()) => Some(Ignored::Stopping),
+            () => None,
+        }
+    }
+
+    /// Looks at bits that were set or cleared, while `before` were active.
+    fn look_at_bits(&mut self, before: Inputs) {
+        for source in 0..self.no_effect.sources.len() {
+            let mut now = self.bits_of(source);
+            let was = self.no_effect.sources[source];
+            let fresh = (now.kept & !was.kept) | (now.idle & !was.idle);
+            let (set, cleared) = (now.reach & !was.reach, was.reach & !now.reach & !now.kept);
+            now.untold = was.untold | fresh;
+            for bit in (0..16u8).filter(|bit| (set | cleared) >> bit & 1 != 0) {
+                let signal = self.bit(source, bit);
+                let alike = signal.is_ok_and(|it| before.has(it) == self.inputs.has(it));
+                now.untold |= u16::from(alike) << bit;
+            }
+            self.no_effect.sources[source] = now;
+        }
+    }
+
+    /// Tells of bits that were set and reach no signal, and of those that another source keeps as it is.
+    fn explain_bits(&mut self) {
+        for source in 0..self.no_effect.sources.len() {
+            let untold = std::mem::take(&mut self.no_effect.sources[source].untold);
+            let Some(row) = self.source_row(source).filter(|_| untold != 0) else { continue };
+            for bit in (0..16u8).filter(|bit| untold >> bit & 1 != 0) {
+                let on = self.bank.raw(row) >> bit & 1 != 0;
+                let why = self.bit(source, bit).map_or_else(|why| why, Ignored::OtherSource);
+                self.ignore(Ordered::Bit { row, bit, on }, why);
+            }
+        }
+    }
+
+    /// The bits of a source that are set.
+    fn bits_of(&self, source: usize) -> Bits {
+        let mut bits = Bits::default();
+        let Some(row) = self.source_row(source) else { return bits };
+        let raw = self.bank.raw(row) as u16;
+        for bit in (0..16u8).filter(|bit| raw >> bit & 1 != 0) {
+            let kind = match self.bit(source, bit) {
+                Ok(_) => &mut bits.reach,
+                Err(Ignored::Disabled { .. } | Ignored::Claimed { .. }) => &mut bits.kept,
+                // The log tells of such a function once, whatever asks for it.
+                Err(Ignored::NotSimulated) => continue,
+                Err(_) => &mut bits.idle,
+            };
+            *kind |= 1 << bit;
+        }
+        bits
+    }
+
+    fn source_row(&self, source: usize) -> Option<RowId> {
+        let wiring = &self.model.wiring;
+        let words = wiring.input_words.as_ref().map_or(&[][..], |words| &words.rows);
+        let bits = || wiring.input_bits.get(source - words.len()).map(|(row, _)| *row);
+        words.get(source).copied().or_else(bits)
+    }
+
+    /// The signal that a bit of a source makes active, or why it makes none active.
+    fn bit(&self, source: usize, bit: u8) -> Result<Input, Ignored> {
+        let wiring = &self.model.wiring;
+        let words = wiring.input_words.as_ref().filter(|words| source < words.rows.len());
+        let absent = &wiring.not_simulated;
+        if let Some(words) = words {
+            let position = (source as u16) << 4 | u16::from(bit);
+            let enable = words.enabled_by.get(source).copied();
+            let disabled = enable.filter(|row| self.bank.raw(*row) >> bit & 1 == 0);
+            let signal = words.positions.iter().find(|(it, _)| *it == position);
+            let is_absent = absent.input_positions.iter().any(|(it, _)| *it == position);
+            return match (disabled, signal) {
+                (Some(row), _) => Err(Ignored::Disabled { row, bit: Some(bit) }),
+                (None, Some((_, signal))) => Ok(*signal),
+                (None, None) if is_absent => Err(Ignored::NotSimulated),
+                (None, None) => Err(Ignored::Nothing),
+            };
+        }
+        let words = wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
+        let (row, bits) = &wiring.input_bits[source - words];
+        let signal = bits.iter().find(|(it, _)| *it == bit).map(|(_, signal)| *signal);
+        let mut absent = absent.input_bits.iter().filter(|(it, _)| it == row);
+        let is_absent = absent.any(|(_, bits)| bits.iter().any(|(it, _)| *it == bit));
+        match self.claimed_by(*row, bit) {
+            Some(row) => Err(Ignored::Claimed { row }),
+            None if is_absent => Err(Ignored::NotSimulated),
+            None => signal.ok_or(Ignored::Nothing),
+        }
+    }
+
+    /// Why another level on input terminal `index` has no effect on its signal, if it has none, while `before` were
+    /// active.
+    pub(super) fn why_no_signal(&self, index: u8, before: Inputs) -> Option<Ignored> {
+        let terminals = self.model.wiring.input_terminals.as_ref()?;
+        let row = *terminals.functions.get(usize::from(index))?;
+        let value = self.bank.value(&self.model, row);
+        match terminals.meaning(self.bank.raw(row)) {
+            _ if !self.powered => Some(Ignored::NoSupply),
+            _ if self.is_stuck(index) => Some(Ignored::Stuck),
+            None if self.is_absent(row) => None,
+            None => Some(Ignored::NoFunction { row, value }),
+            Some(signal) => (before.has(signal) == self.inputs.has(signal))
+                .then_some(Ignored::OtherSource(signal)),
+        }
+    }
+
+    /// Does `row` give a terminal a function that is not simulated?
+    fn is_absent(&self, row: RowId) -> bool {
+        let number = self.bank.raw(row);
+        self.model
+            .wiring
+            .not_simulated
+            .input_codes
+            .iter()
+            .any(|(code, _)| u32::from(*code) == number)
+    }
+
+    /// Takes note of rows that `plan` has written and that are only stored.
+    pub(super) fn look_at_stored(&mut self, plan: &WritePlan) {
+        let model = self.model.clone();
+        for (id, raw) in plan.values() {
+            let row = model.map.row(id);
+            let (word, bit) = (usize::from(id.0 / 64), 1 << (id.0 % 64));
+            if row.inert && self.no_effect.stored[word] & bit == 0 {
+                self.no_effect.stored[word] |= bit;
+                let order = Ordered::Write { row: id, value: row.kind.value(raw) };
+                self.ignore(order, Ignored::StoredOnly);
+            }
+        }
+    }
+
+    /// The output word that `row` shows, if nothing of it is enabled; else it has been seen.
+    pub(super) fn dark_word(&self, row: RowId) -> Option<u16> {
+        let Some(Shows::OutputWord(word)) = self.model.wiring.shows(row) else { return None };
+        let enable = self.model.wiring.output_words.as_ref()?.enabled_by.get(usize::from(*word))?;
+        (self.bank.raw(*enable) == 0).then_some(*word)
+    }
+
+    /// Takes note of output words that were read and of which nothing is enabled, as bits.
+    pub(super) fn look_at_dark(&mut self, read: u16) {
+        let Some(words) = &self.model.wiring.output_words else { return };
+        let mut enabled = 0;
+        for (word, row) in words.enabled_by.iter().enumerate() {
+            enabled |= u16::from(self.bank.raw(*row) != 0) << word;
+        }
+        let fresh = read & !self.no_effect.dark;
+        self.no_effect.dark = (self.no_effect.dark | read) & !enabled;
+        for word in (0..16u16).filter(|word| fresh >> word & 1 != 0) {
+            let wiring = &self.model.wiring;
+            let shows = wiring.shows.iter().position(|it| *it == Some(Shows::OutputWord(word)));
+            let enable = wiring.output_words.as_ref().map(|it| it.enabled_by[usize::from(word)]);
+            if let (Some(row), Some(enable)) = (shows, enable) {
+                let why = Ignored::Disabled { row: enable, bit: None };
+                self.ignore(Ordered::Read(RowId(row as u16)), why);
+            }
+        }
+    }
+}
+
+/// Does it ask for a run as long as it is active?
+fn asks_for_run(input: Input) -> bool {
+    matches!(
+        input,
+        Input::JogPos
+            | Input::JogNeg
+            | Input::InchPos
+            | Input::InchNeg
+            | Input::Run
+            | Input::SegmentRun
+    )
+}
