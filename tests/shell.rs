@@ -1,5 +1,6 @@
 //! The program and its ports, from outside: few tests and slow ones, because they wait for the wall.
 
+mod clients;
 mod command_line;
 mod determinism;
 mod masters;

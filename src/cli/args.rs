@@ -39,10 +39,11 @@ pub struct RunArgs {
     /// A real serial port
     #[arg(long, value_name = "DEVICE", group = "port")]
     pub serial: Option<String>,
-    /// Modbus TCP (MBAP); port 0 picks a free one
+    /// Modbus TCP (MBAP); port 0 picks a free one. Of more than 64 clients at once the one that has
+    /// been silent longest gives way
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:5020", group = "port")]
     pub tcp: Option<String>,
-    /// Serial frames over TCP
+    /// Serial frames over TCP; as many clients as with --tcp
     #[arg(long, value_name = "ADDR", group = "port")]
     pub rtu_over_tcp: Option<String>,
     /// ASCII framing instead of RTU

@@ -8,12 +8,14 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
+use rustix::net::sockopt;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{Sender, UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::AbortHandle;
 
 use super::said;
 use super::tcp::{ClientId, TcpEvent};
+use crate::time::Duration;
 
 /// Bytes that a reader hands over at once; a Modbus frame has 260 at most.
 const CHUNK: usize = 1024;
@@ -21,9 +23,17 @@ const CHUNK: usize = 1024;
 /// Bytes that may wait for a client on top of what the system keeps for it: some hundred answers.
 const BACKLOG: usize = 64 * 1024;
 
+/// Silence after which the system asks the peer whether it is still there, how often it asks, and how many questions
+/// without an answer end the connection: half a minute and three times ten seconds.
+const KEEPALIVE_AFTER: Duration = Duration::from_secs(30);
+const KEEPALIVE_EVERY: Duration = Duration::from_secs(10);
+const KEEPALIVE_PROBES: u32 = 3;
+
 /// A connected client; gone when this is dropped.
 #[derive(Debug)]
 pub(super) struct Client {
+    /// The number of the piece of bytes that it sent last, among those of all clients; 0 before its first.
+    pub(super) heard: u64,
     stream: Arc<TcpStream>,
     backlog: UnboundedSender<Vec<u8>>,
     /// Bytes in the backlog, and in the hands of the writer.
@@ -37,13 +47,15 @@ impl Client {
     pub(super) fn start(id: ClientId, stream: TcpStream, report: Sender<TcpEvent>) -> Self {
         // An answer must not wait for the next one. Fails only if the client has gone already.
         let _ = stream.set_nodelay(true);
+        // Without it a client whose cable was pulled is never missed; where the system has none, it is not.
+        let _ = keep_alive(&stream);
         let stream = Arc::new(stream);
         let (backlog, queue) = unbounded_channel();
         let waiting = Arc::new(AtomicUsize::new(0));
         let reader = tokio::spawn(listen(id, stream.clone(), report.clone()));
         let writer = tokio::spawn(catch_up(id, stream.clone(), queue, waiting.clone(), report));
         let (reader, writer) = (reader.abort_handle(), writer.abort_handle());
-        Self { stream, backlog, waiting, reader, writer }
+        Self { heard: 0, stream, backlog, waiting, reader, writer }
     }
 
     /// Sends an answer: in one write, if the connection takes it. Never waits.
@@ -81,6 +93,11 @@ impl Client {
         self.waiting.load(Relaxed)
     }
 
+    /// The connection itself.
+    pub(super) fn stream(&self) -> &TcpStream {
+        &self.stream
+    }
+
     /// Waits for what the writer waits for.
     pub(super) async fn has_room(&self) {
         self.stream.writable().await.unwrap();
@@ -92,6 +109,14 @@ impl Drop for Client {
         self.reader.abort();
         self.writer.abort();
     }
+}
+
+/// Has the system ask a silent peer whether it is still there.
+fn keep_alive(stream: &TcpStream) -> rustix::io::Result<()> {
+    sockopt::set_socket_keepalive(stream, true)?;
+    sockopt::set_tcp_keepidle(stream, KEEPALIVE_AFTER)?;
+    sockopt::set_tcp_keepintvl(stream, KEEPALIVE_EVERY)?;
+    sockopt::set_tcp_keepcnt(stream, KEEPALIVE_PROBES)
 }
 
 /// The reader: hands on what arrives, in order, until the client leaves.

@@ -2,7 +2,10 @@
 //!
 //! Which frames cross it (MBAP, or serial frames as they are) is decided elsewhere. A client that only
 //! shuts down its sending half counts as gone: answers given until then still reach it, later ones don't.
-//! A peer that vanishes without a word (a pulled cable) is not noticed until an answer fails.
+//! A peer that vanishes without a word (a pulled cable) is noticed by keepalive, within a minute.
+//!
+//! A limit on clients must not let those that do nothing keep out one that has something to ask: where
+//! [`MAX_CLIENTS`] are connected, a new one displaces the one that has been silent longest.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, ErrorKind};
@@ -27,7 +30,7 @@ pub struct ClientId(pub u64);
 
 /// What happened at a listener.
 ///
-/// Every `Opened` is followed by exactly one `Closed`, and nothing of a client comes after that.
+/// Every `Opened` is followed by exactly one `Closed` or `Displaced`, and nothing of a client comes after that.
 #[derive(Debug)]
 pub enum TcpEvent {
     /// A client came.
@@ -36,8 +39,9 @@ pub enum TcpEvent {
     Bytes(ClientId, Vec<u8>),
     /// A client is gone: it left, we closed it (`None` both), its connection broke, or it stopped reading.
     Closed(ClientId, Option<io::Error>),
-    /// A client came while [`MAX_CLIENTS`] were there, and was turned away.
-    Refused(SocketAddr),
+    /// A client came while [`MAX_CLIENTS`] were there, and this one was closed in its favour: none had been silent
+    /// longer. It takes the place of its `Closed`.
+    Displaced(ClientId),
     /// The system gives us no more connections (too many open files). None is taken until a client leaves or
     /// the owner, after some time, calls [`Listener::accept_again`].
     NotAccepting(io::Error),
@@ -50,6 +54,8 @@ pub struct Listener {
     accepting: bool,
     clients: BTreeMap<ClientId, Client>,
     last_id: u64,
+    /// Pieces of bytes that clients have sent: counted, since a port knows no time.
+    pieces: u64,
     /// What the clients' tasks report.
     reports: Receiver<TcpEvent>,
     report: Sender<TcpEvent>,
@@ -78,6 +84,7 @@ impl Listener {
             accepting: true,
             clients: BTreeMap::new(),
             last_id: 0,
+            pieces: 0,
             reports,
             report,
             untold: VecDeque::new(),
@@ -101,7 +108,10 @@ impl Listener {
             }
             let event = tokio::select! {
                 accepted = self.socket.accept(), if self.accepting => match accepted {
-                    Ok((stream, peer)) => Some(self.admit(stream, peer)),
+                    Ok((stream, peer)) => {
+                        self.admit(stream, peer);
+                        None
+                    }
                     Err(e) => self.not_accepted(e),
                 },
                 Some(report) = self.reports.recv() => self.told(report),
@@ -130,14 +140,21 @@ impl Listener {
         self.accepting = true;
     }
 
-    fn admit(&mut self, stream: TcpStream, peer: SocketAddr) -> TcpEvent {
+    fn admit(&mut self, stream: TcpStream, peer: SocketAddr) {
         if self.clients.len() >= MAX_CLIENTS {
-            return TcpEvent::Refused(peer);
+            // Of those that have said nothing at all the one that came first.
+            let silent = self.clients.iter().min_by_key(|(_, client)| client.heard);
+            let silent = silent.map(|(id, _)| *id);
+            if let Some(id) = silent
+                && self.forget(id)
+            {
+                self.untold.push_back(TcpEvent::Displaced(id));
+            }
         }
         self.last_id += 1;
         let id = ClientId(self.last_id);
         self.clients.insert(id, Client::start(id, stream, self.report.clone()));
-        TcpEvent::Opened(id, peer)
+        self.untold.push_back(TcpEvent::Opened(id, peer));
     }
 
     fn not_accepted(&mut self, error: io::Error) -> Option<TcpEvent> {
@@ -154,7 +171,11 @@ impl Listener {
     /// A report of a client's task, unless that client is gone: its last words may still be in the queue.
     fn told(&mut self, report: TcpEvent) -> Option<TcpEvent> {
         let known = match &report {
-            TcpEvent::Bytes(id, _) => self.clients.contains_key(id),
+            TcpEvent::Bytes(id, _) => {
+                self.pieces += 1;
+                let client = self.clients.get_mut(id).map(|client| client.heard = self.pieces);
+                client.is_some()
+            }
             TcpEvent::Closed(id, _) => self.forget(*id),
             _ => true,
         };

@@ -3,6 +3,7 @@
 use super::{Send, Served};
 use crate::bus::LinkId;
 use crate::shell::clock::Clock;
+use crate::shell::port::tcp::MAX_CLIENTS;
 use crate::shell::port::{ClientId, Listener, TcpEvent};
 use crate::time::Duration;
 use std::collections::BTreeMap;
@@ -44,7 +45,9 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
         match event {
             None => line.advance(),
             Some(TcpEvent::Opened(id, from)) => {
-                info!("{}: {from} connected", line.name);
+                if clients.displaced == 0 {
+                    info!("{}: {from} connected", line.name);
+                }
                 clients.insert(id, line.bus.open(line.framing()));
             }
             Some(TcpEvent::Bytes(id, bytes)) => {
@@ -59,9 +62,24 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
                     Some(error) => warn!("{}: a client is gone: {error}", line.name),
                     None => info!("{}: a client has left", line.name),
                 }
+                // Told once a crowd, not once a client.
+                if let count @ 1.. = std::mem::take(&mut clients.displaced) {
+                    info!(
+                        "{}: fewer than {MAX_CLIENTS} clients again; {count} were displaced",
+                        line.name
+                    );
+                }
             }
-            Some(TcpEvent::Refused(from)) => {
-                warn!("{}: too many clients, {from} was turned away", line.name);
+            Some(TcpEvent::Displaced(id)) => {
+                clients.remove(id).into_iter().for_each(|link| line.bus.close(link));
+                if clients.displaced == 0 {
+                    warn!(
+                        "{}: {MAX_CLIENTS} clients are connected, which is the limit: each new one displaces \
+                         the one that has been silent longest",
+                        line.name
+                    );
+                }
+                clients.displaced += 1;
             }
             Some(TcpEvent::NotAccepting(error)) => {
                 warn!("{}: can't accept clients for now: {error}", line.name);
@@ -76,6 +94,8 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
 struct Clients {
     by_client: BTreeMap<ClientId, LinkId>,
     by_link: BTreeMap<LinkId, ClientId>,
+    /// How many had to give way since the limit was reached; 0 below it.
+    displaced: u64,
 }
 
 impl Clients {

@@ -182,20 +182,53 @@ async fn a_broken_connection_and_a_close_of_ours_are_told_once() {
     assert!(timeout(Duration::from_millis(20), listener.next()).await.is_err());
 }
 
+/// The one that has been silent longest gives way: first those that never said a word, oldest first.
 #[tokio::test]
-async fn turns_away_one_too_many_until_another_leaves() {
+async fn one_too_many_displaces_the_most_silent() {
     let (mut listener, addr) = listener();
     let mut clients = Vec::new();
     for _ in 0..MAX_CLIENTS {
-        clients.push(connect(&mut listener, addr).await.0);
+        clients.push(connect(&mut listener, addr).await);
     }
-    let mut late = TcpStream::connect(addr).await.unwrap();
-    let TcpEvent::Refused(peer) = next(&mut listener).await else { panic!("not refused") };
-    assert_eq!(peer, late.local_addr().unwrap());
-    assert_eq!(late.read(&mut [0; 8]).await.unwrap(), 0);
-    clients.pop();
-    closed(&mut listener).await;
+    // All speak but number 5; number 3 again.
+    for n in (0..MAX_CLIENTS).filter(|n| *n != 5).chain([3]) {
+        clients[n].0.write_all(b"?").await.unwrap();
+        assert_eq!(received(&mut listener).await.0, clients[n].1);
+    }
+    for n in [5, 0, 1, 2, 4] {
+        let (mut late, late_id) = {
+            let stream = TcpStream::connect(addr).await.unwrap();
+            let TcpEvent::Displaced(gone) = next(&mut listener).await else { panic!("none") };
+            assert_eq!(gone, clients[n].1, "number {n}");
+            let TcpEvent::Opened(id, peer) = next(&mut listener).await else { panic!("not in") };
+            assert_eq!(peer, stream.local_addr().unwrap());
+            (stream, id)
+        };
+        assert_eq!(clients[n].0.read(&mut [0; 8]).await.unwrap(), 0, "the end");
+        late.write_all(b"hello").await.unwrap();
+        assert_eq!(received(&mut listener).await, (late_id, b"hello".to_vec()));
+        listener.send(late_id, b"answer");
+        assert_eq!(takes(&mut late, 6).await, b"answer");
+        clients.push((late, late_id));
+        assert_eq!(listener.clients.len(), MAX_CLIENTS);
+    }
+    // Where there is room nobody gives way.
+    let (last, id) = clients.pop().unwrap();
+    drop(last);
+    assert_eq!(closed(&mut listener).await.0, id);
     connect(&mut listener, addr).await;
+}
+
+#[tokio::test]
+async fn a_silent_peer_is_asked_whether_it_is_there() {
+    use rustix::net::sockopt;
+    let (mut listener, addr) = listener();
+    let (_stream, id) = connect(&mut listener, addr).await;
+    let stream = listener.clients[&id].stream();
+    assert!(sockopt::socket_keepalive(stream).unwrap());
+    let within = sockopt::tcp_keepidle(stream).unwrap()
+        + sockopt::tcp_keepintvl(stream).unwrap() * sockopt::tcp_keepcnt(stream).unwrap();
+    assert_eq!(within, Duration::from_secs(60));
 }
 
 #[tokio::test]
