@@ -11,9 +11,9 @@ use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
-    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, Lasts, LimitRule,
-    LimitSource, LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace, Quantity, Setting,
-    SoftLimitRule, Target, Then, Threshold, Word,
+    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, InterruptRule, Lasts,
+    LimitRule, LimitSource, LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace,
+    Quantity, Setting, SoftLimitRule, Target, Then, Threshold, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -70,6 +70,8 @@ fn roles() -> String {
     section::<Condition>(&mut out, "Conditions", conditions);
     let targets = "What the target of a position segment is: `axis.segments.position.kind`.";
     section::<Target>(&mut out, "Targets of segments", targets);
+    let rules = "Whether interrupt positioning may start: `axis.interrupt.rule`.";
+    section::<InterruptRule>(&mut out, "Rules for interrupt positioning", rules);
     let lasts = "How long a velocity segment lasts: `axis.segments.velocity.trigger`.";
     section::<Lasts>(&mut out, "Triggers of segments", lasts);
     homing(&mut out);

@@ -2,6 +2,7 @@
 //!
 //! The `match`es have no `_` arm on purpose: a new word does not compile until it is tested here.
 
+mod functions;
 mod homing;
 mod motion;
 mod quantities;
@@ -54,15 +55,11 @@ fn each_input_acts_from_each_source() {
                     source(&mut rig, input, false);
                     assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
                 }
-                Input::EnableInhibit => {
-                    source(&mut rig, input, true);
-                    give(&mut rig, Action::Enable);
-                    assert!(!rig.drive().output(Output::Enabled), "{place}{}", rig.log());
-                    source(&mut rig, input, false);
-                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
-                    source(&mut rig, input, true);
-                    assert!(rig.drive().output(Output::Enabled), "{place}{}", rig.log());
-                }
+                Input::EnableInhibit
+                | Input::InterruptStart
+                | Input::InterruptInhibit
+                | Input::InterruptUnlock
+                | Input::ReversePosition => functions::acts(&mut rig, input, *source, &place),
                 Input::Stop | Input::QuickStop => {
                     running(&mut rig);
                     source(&mut rig, input, true);
@@ -132,17 +129,6 @@ fn each_input_acts_from_each_source() {
                     rig.advance(Duration::from_secs(5));
                     let want = if input == Input::MoveStart { 200_000 } else { 40_000 };
                     assert_eq!(rig.drive().quantity(Quantity::PositionActual), want, "{place}");
-                }
-                Input::ReversePosition => {
-                    give(&mut rig, Action::Enable);
-                    source(&mut rig, input, true);
-                    for want in [-200_000, 0] {
-                        give(&mut rig, Action::MoveStart);
-                        source(&mut rig, input, false);
-                        rig.advance(Duration::from_secs(5));
-                        let position = rig.drive().quantity(Quantity::PositionActual);
-                        assert_eq!(position, want, "{place}");
-                    }
                 }
                 Input::SegmentStep => {
                     segment::chain(&mut rig, 0x0002, 0);
@@ -231,6 +217,13 @@ fn each_output_shows_both_ways() {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::MoveStart);
                 rig.advance(Duration::from_secs(2));
+            }
+            Output::InterruptActive | Output::InterruptDone => {
+                write_row(&mut rig, "P025", 1);
+                give(&mut rig, Action::Enable);
+                by_bit(&mut rig, Input::InterruptStart, true);
+                let done = output == Output::InterruptDone;
+                rig.advance(Duration::from_millis(if done { 300 } else { 100 }));
             }
             Output::HomeDone => {
                 let machine =

@@ -16,7 +16,7 @@ pub struct DeviceSpec {
     pub unit: Option<u8>,
     /// Start values by register.
     pub set: BTreeMap<String, i64>,
-    /// Address switches.
+    /// DIP switches: those of the address, above them those of the speed.
     pub switches: Option<u8>,
     /// Input terminals that carry a signal from the start, by name.
     pub terminals: Vec<String>,
@@ -46,7 +46,7 @@ pub enum Wish {
     Set(String),
     /// The name that a start value goes by.
     SetName(String),
-    /// The address switches.
+    /// The DIP switches.
     Switches,
     /// A terminal, by position in the list.
     Terminal(usize),
@@ -189,17 +189,19 @@ fn unit_value(
 
 fn switches(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) -> u8 {
     let Some(switches) = spec.switches else { return 0 };
-    let count = model.line.unit.switches;
+    let of_address = model.line.unit.switches;
+    let count = of_address + model.line.baud_switches;
     let most = ((1u16 << count) - 1) as u8;
+    let address = switches & ((1u16 << of_address) - 1) as u8;
     let mut refuse = |what: String, advice: Option<String>| {
         problems.push(SpecProblem { wish: Wish::Switches, what, advice });
     };
     if count == 0 {
-        refuse("this drive has no address switches".into(), Some("use `unit`".into()));
+        refuse("this drive has no DIP switches".into(), Some("use `unit`".into()));
     } else if switches > most {
         refuse(format!("{count} switches make 0..{most}, not {switches}"), None);
-    } else if switches != 0 && spec.unit.is_some_and(|unit| unit != switches) {
-        let what = format!("the switches say {switches}, and then `unit` changes nothing");
+    } else if address != 0 && spec.unit.is_some_and(|unit| unit != address) {
+        let what = format!("the switches say {address}, and then `unit` changes nothing");
         refuse(what, Some("give one of the two".into()));
     }
     switches

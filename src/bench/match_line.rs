@@ -31,6 +31,29 @@ pub fn match_line(device: &mut Device, mode: Mode, told: bool) -> Result<(), Str
         let (name, format) = (&model.name, settings.format);
         format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))
     })?;
+    if line.baud_switches != 0 {
+        let shift = line.unit.switches;
+        let row = model.map.row(line.format.row);
+        if line.format.code_in(row.kind.value(row.init)) != format {
+            return Err(format!(
+                "{} has switches for its speed and no setting of its format",
+                model.name
+            ));
+        }
+        for setup in &mut device.setups {
+            match i64::from(setup.switches >> shift) {
+                0 => setup.switches |= (baud as u8) << shift,
+                code if code == baud => {}
+                code => {
+                    let says = line.baud.codes.get(&code).copied().unwrap_or_default();
+                    return Err(format!(
+                        "its switches say {says} baud, which does not go with a line at {mode}"
+                    ));
+                }
+            }
+        }
+        return Ok(());
+    }
     for setup in &mut device.setups {
         agrees(&model, setup, &line.baud, baud, mode)?;
         agrees(&model, setup, &line.format, format, mode)?;

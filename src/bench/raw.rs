@@ -93,7 +93,8 @@ pub struct RawBenchDrive {
     /// Start values, by register: the row's name, or an address.
     #[serde(default, deserialize_with = "by_register")]
     pub set: BTreeMap<String, i64>,
-    /// The address switches, as a number.
+    /// The DIP switches as a number, SW1 being bit 0: those of the address, above them those of the speed where the
+    /// drive has such. Those of the speed, all off, are set to the line's.
     pub switches: Option<u8>,
     /// Input terminals that carry a signal from the start.
     #[serde(default)]

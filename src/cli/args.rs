@@ -33,6 +33,9 @@ pub struct RunArgs {
     /// Unit address (default: the model's)
     #[arg(short = 'a', long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=247))]
     pub unit: Option<u8>,
+    /// The drive's DIP switches as a number, SW1 being bit 0: its address, and its speed where it has switches for that
+    #[arg(long, value_name = "N")]
+    pub switches: Option<u8>,
     /// Own pseudo-terminal; LINK becomes a symlink to it for the run (default)
     #[arg(long, value_name = "LINK", num_args = 0..=1, group = "port")]
     pub pty: Option<Option<PathBuf>>,

@@ -141,6 +141,7 @@ fn refuse_swallowed_model(args: &RunArgs) -> Result<(), Failure> {
 fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
     let flags = [
         ("--unit", args.unit.is_some()),
+        ("--switches", args.switches.is_some()),
         ("--pty", args.pty.is_some()),
         ("--serial", args.serial.is_some()),
         ("--tcp", args.tcp.is_some()),
@@ -198,7 +199,8 @@ fn line(
     set: BTreeMap<String, i64>,
     saved: &mut Saved,
 ) -> Result<BenchLine, Failure> {
-    let spec = DeviceSpec { unit: args.unit, set, ..DeviceSpec::default() };
+    let spec =
+        DeviceSpec { unit: args.unit, switches: args.switches, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {
         let sentence = |it: &SpecProblem| match &it.advice {
             Some(advice) => format!("{}: {} ({advice})\n", flag(&it.wish, &spec), it.what),

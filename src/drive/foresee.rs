@@ -14,7 +14,9 @@ impl Drive {
     /// sixteenth of a ramp.
     pub fn foresee(&mut self, side: impl Fn(&Self) -> Ordering) -> Option<Instant> {
         let (now, end) = (self.now, self.deadline());
-        let marks = self.motor.marks(now);
+        let mut marks = self.motor.marks(now);
+        marks.extend(self.interrupt_forgotten_at().filter(|at| *at > now));
+        marks.sort_unstable();
         let drive = RefCell::new(self);
         let side = |at| {
             let mut drive = drive.borrow_mut();

@@ -9,6 +9,7 @@ mod alarms;
 mod foresee;
 mod gear;
 mod home;
+mod interrupt;
 mod levels;
 mod memory;
 mod motion;
@@ -34,6 +35,7 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use interrupt::Interrupt;
 use levels::{Level, Velocity};
 use memory::Memory;
 use no_effect::NoEffect;
@@ -83,6 +85,7 @@ pub struct Drive {
     /// Number of the position segment that started last.
     segment: u16,
     chain: Chain,
+    interrupt: Interrupt,
     /// Do its positive counts go the machine's negative way? Then so do those of its motor.
     reversed: bool,
     /// Where the motor is when the position register says 0.
@@ -131,6 +134,7 @@ impl Drive {
             velocity: None,
             segment: 0,
             chain: Chain::default(),
+            interrupt: Interrupt::default(),
             reversed: false,
             zero: 0,
             cleared_turns: 0,
@@ -379,6 +383,7 @@ impl Drive {
         (self.home_done, self.never_enabled) = (false, true);
         self.told_not_simulated = 0;
         (self.run, self.velocity, self.segment) = (None, None, 0);
+        self.interrupt = Interrupt::default();
         self.chain.end();
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
         // What is active from the start has not risen.
@@ -410,20 +415,31 @@ impl Drive {
     fn unit_asked_for(&self) -> u8 {
         let rule = &self.model.line.unit;
         let register = self.bank.value(&self.model, rule.row);
-        match (self.switches, u8::try_from(register).unwrap_or(0)) {
+        let switches = self.switches & ((1u16 << rule.switches) - 1) as u8;
+        match (switches, u8::try_from(register).unwrap_or(0)) {
             (0, 0) => rule.zero,
             (0, unit) => unit,
             (switches, _) => switches,
         }
     }
 
-    /// The mode that the parameters ask for.
+    /// The mode that the parameters ask for, or the switches in place of them.
     fn mode_asked_for(&self) -> Option<Mode> {
         let line = &self.model.line;
-        let baud = line.baud.decode(self.bank.value(&self.model, line.baud.row))?;
-        let WireFormat { ascii, format } =
-            line.format.decode(self.bank.value(&self.model, line.format.row))?;
-        Some(Mode { ascii, settings: Settings { baud, format } })
+        let (baud, format) = match line.baud_switches {
+            0 => (
+                line.baud.decode(self.bank.value(&self.model, line.baud.row)),
+                line.format.decode(self.bank.value(&self.model, line.format.row)),
+            ),
+            _ => {
+                let code = i64::from(self.switches >> line.unit.switches);
+                let row = self.model.map.row(line.format.row);
+                let factory = line.format.decode(row.kind.value(row.init));
+                (line.baud.codes.get(&code).copied(), factory)
+            }
+        };
+        let WireFormat { ascii, format } = format?;
+        Some(Mode { ascii, settings: Settings { baud: baud?, format } })
     }
 
     /// Carries out `action`.

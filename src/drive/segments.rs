@@ -10,12 +10,19 @@ use crate::words::{Condition, Input, Inputs, Lasts, RowId, Setting, Target};
 impl Drive {
     /// Starts what the edges in `risen` ask for, in the order of the catalogue.
     pub(super) fn start_by_inputs(&mut self, risen: Inputs) {
-        let starts = [Input::MoveStart, Input::SegmentStart, Input::SegmentStep, Input::SegmentRun];
+        let starts = [
+            Input::MoveStart,
+            Input::SegmentStart,
+            Input::SegmentStep,
+            Input::SegmentRun,
+            Input::InterruptStart,
+        ];
         for input in starts.into_iter().filter(|it| risen.has(*it)) {
             let started = match input {
                 Input::MoveStart => self.start_move(),
                 Input::SegmentStart => self.start_position_segment(),
                 Input::SegmentStep => self.step_chain(),
+                Input::InterruptStart => self.start_interrupt(),
                 _ => self.start_velocity_segment(),
             };
             self.heed(input, started);
@@ -45,6 +52,7 @@ impl Drive {
     /// Lets go of what is over: a chain that something broke off, a run by an edge that has ended. Where
     /// the axis has arrived, the chain is told.
     pub(super) fn settle_segments(&mut self, free: bool) {
+        self.settle_interrupt();
         let phase = self.motor.phase();
         let arrived = self.motor.has_arrived();
         if !(free && (arrived || phase == Phase::Moving)) {
@@ -154,6 +162,7 @@ impl Drive {
         };
         self.motor.start_move(now, target, how, interrupt)?;
         self.tell_stages(segment);
+        self.replace_interrupt();
         self.chain.end();
         Ok(())
     }

@@ -13,7 +13,7 @@ pub struct Setup {
     pub kept: Kept,
     /// Start values, kept over power-off as if somebody had stored them. They win over what was kept.
     pub values: Vec<(RowId, u32)>,
-    /// The address switches.
+    /// The DIP switches: those of the address, above them those of the speed.
     pub switches: u8,
     /// Signals on the input terminals, bit by bit.
     pub terminals: u16,

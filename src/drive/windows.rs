@@ -44,8 +44,11 @@ impl Drive {
         let held = control.is_some() && self.motor.is_held_back(self.now);
         let encoder = self.seen_position();
         let quarter = encoder.rem_euclid(4);
+        let (active, done) = self.interrupt_shows();
         outputs
             .with(Output::InPosition, self.is_in_position())
+            .with(Output::InterruptActive, active)
+            .with(Output::InterruptDone, done)
             .with(Output::Coincides, within(Threshold::CoincidesWindow))
             .with(Output::Near, within(Threshold::NearWindow))
             .with(Output::TorqueLimited, held)
@@ -83,7 +86,7 @@ impl Drive {
     }
 
     /// The number in the base unit of its dimension.
-    fn threshold(&self, threshold: Threshold) -> Option<f64> {
+    pub(super) fn threshold(&self, threshold: Threshold) -> Option<f64> {
         Some(match self.model.wiring.threshold(threshold)? {
             Number::Fixed(number) => number,
             Number::Row(row) => self.bank.value(&self.model, row) as f64 * self.unit_of(row).scale,

@@ -66,6 +66,8 @@ pub enum Ignored {
     AlreadyStopped,
     /// It is slowing down.
     Stopping,
+    /// It has run, and nothing has unlocked it since.
+    Locked,
     /// A stop level holds the axis.
     Held,
     /// The axis moves.

@@ -26,6 +26,8 @@ pub struct LineRules {
     pub unit: UnitRule,
     /// Where its baud rate comes from.
     pub baud: Coded<u32>,
+    /// Number of DIP switches above those of the address that hold the code of the baud rate; 0 where its row does.
+    pub baud_switches: u8,
     /// Where framing and character format come from.
     pub format: Coded<WireFormat>,
     /// Characters of silence that end an RTU frame.
@@ -214,6 +216,8 @@ pub(super) fn compile(
     }
     let baud = rows.find(&raw.baud.register, &baud_path.key("register"), problems);
     coded(baud, raw.baud.digit, &raw.baud.codes, rows, &baud_path, problems);
+    let baud_switches = raw.baud.switches.unwrap_or(0);
+    baud_switches_fit(raw, &baud_path, problems);
     let word_order = word_order(&raw.word_order, rows, &path.key("word_order"), problems);
     let format = format(&raw.format, rows, &path.key("format"), problems);
     let refuse = refuse(raw, rows, &path.key("refuse"), problems);
@@ -223,6 +227,7 @@ pub(super) fn compile(
         functions: raw.functions.clone(),
         unit,
         baud: Coded { row: baud?, digit: raw.baud.digit, codes: raw.baud.codes.clone() },
+        baud_switches,
         format: format?,
         silence: raw.silence,
         reply_after: reply_after.unwrap_or_default(),
@@ -242,6 +247,19 @@ pub(super) fn compile(
         unlisted_reads_zero: raw.unlisted_reads == RawUnlistedReads::Zero,
         refuse,
     })
+}
+
+/// Is there room for the switches, and a code for each way to set them?
+fn baud_switches_fit(raw: &RawLine, path: &Path, problems: &mut Vec<Problem>) {
+    let Some(count) = raw.baud.switches else { return };
+    let room = 8u8.saturating_sub(raw.unit.switches.unwrap_or(0));
+    if !(1..=room).contains(&count) {
+        let what = "a drive has 1 to 8 switches for its address and its speed together";
+        problems.push(Problem::value(path.key("switches"), what));
+    } else if let Some(code) = (0..1i64 << count).find(|code| !raw.baud.codes.contains_key(code)) {
+        let what = format!("{count} switches can say {code}, and no code stands for that");
+        problems.push(Problem::value(path.key("codes"), what));
+    }
 }
 
 fn within(

@@ -24,7 +24,7 @@ pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
 pub use times::duration;
 pub use wiring::{
     Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Gear, Hold,
-    Homing, InputWords, Limits, Link, Monitor, Number, OutputWords, PositionSegment,
+    Homing, InputWords, Interrupt, Limits, Link, Monitor, Number, OutputWords, PositionSegment,
     PositionSegments, Reaction, Segments, Servo, Shown, Shows, Terminals, Triggers,
     VelocitySegments, Wiring,
 };

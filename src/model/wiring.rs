@@ -7,6 +7,7 @@ mod choice;
 mod claims;
 mod compile;
 mod homing;
+mod interrupt;
 mod limits;
 mod names;
 mod not_simulated;
@@ -24,6 +25,7 @@ pub use chain::{ChainRules, Link};
 pub use choice::{Choice, Digit};
 pub(super) use compile::compile;
 pub use homing::{Finish, Homing};
+pub use interrupt::Interrupt;
 pub use limits::Limits;
 pub use not_simulated::NotSimulated;
 pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments};
@@ -271,6 +273,8 @@ pub struct Axis {
     pub settings: Vec<(Setting, RowId)>,
     /// Motions by number.
     pub segments: Segments,
+    /// Interrupt positioning.
+    pub interrupt: Option<Interrupt>,
 }
 
 /// The gear between units of position and counts: a unit is numerator by denominator counts.
@@ -305,6 +309,7 @@ impl Default for Axis {
             speed_unit: None,
             settings: Vec::new(),
             segments: Segments::default(),
+            interrupt: None,
         }
     }
 }

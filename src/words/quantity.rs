@@ -19,7 +19,7 @@ words! {
         ErrorFollowing "error.following" "how far the axis is behind the command of a move, in counts; negative in the negative direction",
         AlarmCode "alarm.code" "the vendor's number of the present alarm, 0 without one",
         UnitInUse "unit.in_use" "the unit address that the drive answers to",
-        UnitSwitches "unit.switches" "the address switches as they are set",
+        UnitSwitches "unit.switches" "the DIP switches as they are set",
     }
 }
 

@@ -1,4 +1,4 @@
-//! What models say about segments: what a target is, how long a run lasts, what a chain waits for.
+//! What models say about segments and interrupt positioning: what a target is, how long a run lasts, what a chain waits for.
 
 use super::words;
 
@@ -17,6 +17,15 @@ words! {
         Relative "relative" "a way to go",
         Absolute "absolute" "a position",
         None "none" "the segment is empty: nothing starts it",
+    }
+}
+
+words! {
+    /// What becomes of interrupt positioning.
+    InterruptRule {
+        Off "off" "`interrupt_start` does nothing",
+        Free "free" "each `interrupt_start` counts",
+        Locks "locks" "once one has run, none counts until `interrupt_unlock`",
     }
 }
 

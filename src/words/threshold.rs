@@ -12,6 +12,7 @@ words! {
         ReachedWindow "reached.window" "how far from `reached.speed` it still shows",
         PositionWindow "position.window" "how far from its end a move may be for `in_position`; 0 if left out",
         PositionSettle "position.settle" "how long it must have been so near; 0 if left out",
+        InterruptDoneTime "interrupt.done_time" "how long `interrupt_done` shows",
         CoincidesWindow "coincides.window" "how far the axis may be behind its command for `coincides`",
         NearWindow "near.window" "how far the axis may be behind its command for `near`",
         AgreesWindow "agrees.window" "how near `speed_agrees` takes a speed for the one that was ordered",
@@ -30,7 +31,7 @@ impl Threshold {
             | Self::AgreesWindow
             | Self::CommandSpeed => Dimension::Speed,
             Self::PositionWindow | Self::CoincidesWindow | Self::NearWindow => Dimension::Position,
-            Self::PositionSettle => Dimension::Time,
+            Self::PositionSettle | Self::InterruptDoneTime => Dimension::Time,
         }
     }
 }

@@ -74,7 +74,7 @@ fn all_of_a_write() -> u16 {
 pub struct RawUnit {
     /// The row that holds the address.
     pub register: String,
-    /// Number of DIP switches that can set the address; a bench sets them with `switches: N`.
+    /// Number of DIP switches that can set the address; a bench sets them with `switches: N`, SW1 being its bit 0.
     pub switches: Option<u8>,
     /// The address when register and switches say 0; default 0, which hears broadcasts only.
     #[serde(default)]
@@ -91,6 +91,9 @@ pub struct RawBaud {
     pub digit: Option<u8>,
     /// Bits per second by code.
     pub codes: BTreeMap<i64, u32>,
+    /// Number of DIP switches above those of the address that hold the code in place of the row. With them the row does
+    /// nothing, nor does that of `format`, which stays as it leaves the factory. Default: none.
+    pub switches: Option<u8>,
 }
 
 /// The register that holds framing and character format.

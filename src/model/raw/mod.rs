@@ -207,6 +207,7 @@ pub const KEYS: &[&str] = &[
     "index",
     "init",
     "inputs",
+    "interrupt",
     "kind",
     "length_check",
     "limit",

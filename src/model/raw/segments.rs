@@ -84,3 +84,15 @@ pub struct RawCondition {
     /// The row with its value.
     pub value: String,
 }
+
+/// Interrupt positioning: a move that takes the place of a motion under way when `interrupt_start` rises.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawInterrupt {
+    /// What it goes by, out of the settings of a move, each with its row; the target is a way.
+    pub quantities: BTreeMap<String, String>,
+    /// May it start: `off`, `free` (default) or `locks`.
+    pub rule: Option<RawChoice<String>>,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}

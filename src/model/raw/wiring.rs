@@ -1,6 +1,6 @@
 //! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
 
-use super::{RawChosen, RawDigit, RawSegments};
+use super::{RawChosen, RawDigit, RawInterrupt, RawSegments};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -178,6 +178,8 @@ pub struct RawAxis {
     /// Motions by number, which signals select and start.
     #[serde(default)]
     pub segments: RawSegments,
+    /// A move that takes the place of a motion under way.
+    pub interrupt: Option<RawInterrupt>,
     /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
     /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
     pub position_gain: Option<f64>,

@@ -70,7 +70,7 @@ const KINDS: [Kind; 7] = [
     },
     Kind {
         name: "segment",
-        inputs: &[Input::SegmentStart, Input::SegmentRun],
+        inputs: &[Input::SegmentStart, Input::SegmentRun, Input::InterruptStart],
         action: None,
         needs: &[],
         takes: &[],
@@ -106,6 +106,8 @@ impl Wirer<'_> {
         let none = RawSegments::default();
         let segments = raw.map_or(&none, |raw| &raw.segments);
         self.segments(segments, &path.key("segments"), &inputs);
+        let interrupt = raw.and_then(|raw| raw.interrupt.as_ref());
+        self.interrupt(interrupt, &path.key("interrupt"), &inputs);
         self.homing_starts(&inputs, &actions);
         let Some(raw) = raw else { return };
         if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {

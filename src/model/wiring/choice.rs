@@ -26,7 +26,8 @@ impl<T: Copy> Choice<T> {
         }
     }
 
-    pub(super) fn row(&self) -> Option<RowId> {
+    /// The row that decides, if one does.
+    pub fn row(&self) -> Option<RowId> {
         match self {
             Self::Fixed(_) => None,
             Self::Row(coded) => Some(coded.row),

@@ -61,7 +61,9 @@ impl Wirer<'_> {
             ("baud", &raw.baud.register),
             ("format", &raw.format.register),
         ];
-        for (key, register) in registers {
+        // Switches that hold the speed leave nothing to do for its row, nor for that of the format.
+        let by_rows = if raw.baud.switches.is_some() { 1 } else { registers.len() };
+        for (key, register) in registers.into_iter().take(by_rows) {
             if let Some((row, _)) = self.rows.map.rows().find(|(_, row)| row.id == *register) {
                 self.react(row, Reaction::Line, &path.key(key).key("register"), At::Value);
             }

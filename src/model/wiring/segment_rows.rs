@@ -14,12 +14,12 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// What a segment needs and what else it may go by.
-struct Takes {
+pub(super) struct Takes {
     needs: &'static [Setting],
     takes: &'static [Setting],
 }
 
-const MOVE: Takes = Takes {
+pub(super) const MOVE: Takes = Takes {
     needs: &[Setting::MoveTarget, Setting::MoveSpeed],
     takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
 };
@@ -133,7 +133,8 @@ impl Wirer<'_> {
         Some(n)
     }
 
-    fn segment_settings(
+    /// The rows that a segment, or interrupt positioning, goes by.
+    pub(super) fn segment_settings(
         &mut self,
         raw: &BTreeMap<String, String>,
         n: u16,
@@ -148,7 +149,7 @@ impl Wirer<'_> {
             let Some(setting) = Setting::parse(name).filter(|_| all().any(|it| it == name)) else {
                 let advice = suggest::did_you_mean(name, all())
                     .unwrap_or_else(|| format!("known: {}", all().collect::<Vec<_>>().join(", ")));
-                let what = format!("no segment goes by `{name}`");
+                let what = format!("nothing here goes by `{name}`");
                 self.problems.push(Problem::key(path, what).advise(advice));
                 continue;
             };
@@ -157,7 +158,7 @@ impl Wirer<'_> {
             settings.push((setting, row));
         }
         for need in takes.needs.iter().filter(|it| !raw.contains_key(it.name())) {
-            let what = format!("no row holds `{}` of the segments", need.name());
+            let what = format!("no row holds `{}`", need.name());
             self.problems.push(Problem::value(path.clone(), what));
         }
         settings

@@ -7,7 +7,7 @@ use crate::units::Unit;
 use crate::words::{Output, Quantity, Threshold, Word};
 
 /// An output with the number that it goes by, and whether it can do without.
-const USES: [(Output, Threshold, bool); 13] = [
+const USES: [(Output, Threshold, bool); 18] = [
     (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
     (Output::Turning, Threshold::TurningSpeed, false),
     (Output::SpeedReached, Threshold::ReachedSpeed, false),
@@ -19,6 +19,11 @@ const USES: [(Output, Threshold, bool); 13] = [
     (Output::InPosition, Threshold::PositionWindow, true),
     (Output::InPosition, Threshold::PositionSettle, true),
     (Output::CommandPresent, Threshold::CommandSpeed, true),
+    (Output::InterruptActive, Threshold::PositionWindow, true),
+    (Output::InterruptActive, Threshold::PositionSettle, true),
+    (Output::InterruptDone, Threshold::PositionWindow, true),
+    (Output::InterruptDone, Threshold::PositionSettle, true),
+    (Output::InterruptDone, Threshold::InterruptDoneTime, false),
     (Output::Coincides, Threshold::CoincidesWindow, false),
     (Output::Near, Threshold::NearWindow, false),
 ];

@@ -1,6 +1,6 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
-use super::{Counts, Homing, Number, Reaction, Wiring};
+use super::{Counts, Homing, Interrupt, Number, Reaction, Wiring};
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
 use crate::model::{Applies, RowId};
@@ -48,7 +48,10 @@ pub(in crate::model) fn check_inert(
 fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     let mut used = vec![false; len];
     let mut mark = |row: RowId| used[usize::from(row.0)] = true;
-    [line.unit.row, line.baud.row, line.format.row].into_iter().for_each(&mut mark);
+    mark(line.unit.row);
+    if line.baud_switches == 0 {
+        [line.baud.row, line.format.row].into_iter().for_each(&mut mark);
+    }
     if let WordOrder::Row { row, .. } = line.word_order {
         mark(row);
     }
@@ -62,6 +65,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
     wiring.axis.segments.rows().for_each(&mut mark);
+    wiring.axis.interrupt.iter().flat_map(Interrupt::rows).for_each(&mut mark);
     wiring.user_outputs.iter().copied().for_each(&mut mark);
     for (_, number) in &wiring.thresholds {
         if let Number::Row(row) = number {

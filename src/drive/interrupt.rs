@@ -1,0 +1,121 @@
+//! Interrupt positioning: a move that takes the place of a motion under way when a signal rises.
+
+use super::Drive;
+use crate::behaviour::Phase;
+use crate::event::Ignored;
+use crate::time::{Duration, Instant};
+use crate::words::{Input, InterruptRule, Threshold};
+
+/// What has become of the last interrupt positioning.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Interrupt {
+    stage: Stage,
+    /// No other starts until it is unlocked.
+    locked: bool,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Stage {
+    /// There was none, or it was broken off, or it is long over.
+    #[default]
+    None,
+    /// It is under way.
+    Active,
+    /// It came to its end.
+    Done {
+        /// When the axis was in position.
+        at: Instant,
+    },
+}
+
+impl Drive {
+    /// Starts interrupt positioning.
+    ///
+    /// # Errors
+    /// Why not: a row or a signal forbids it, it is locked, or the axis can't.
+    pub(super) fn start_interrupt(&mut self) -> Result<(), Ignored> {
+        let model = self.model.clone();
+        let Some(interrupt) = &model.wiring.axis.interrupt else { return Err(Ignored::NoMeaning) };
+        self.settle_interrupt();
+        match self.interrupt_rule() {
+            None => return Err(Ignored::NoMeaning),
+            Some(InterruptRule::Off) => {
+                let row = interrupt.rule.row().ok_or(Ignored::NoMeaning)?;
+                return Err(Ignored::Starter { row, value: self.bank.value(&model, row) });
+            }
+            Some(InterruptRule::Locks) if self.interrupt.locked => return Err(Ignored::Locked),
+            Some(InterruptRule::Locks | InterruptRule::Free) => {}
+        }
+        if self.inputs.has(Input::InterruptInhibit) {
+            return Err(Ignored::Inhibited);
+        }
+        if self.interrupt.stage == Stage::Active {
+            return Err(Ignored::Moving);
+        }
+        self.go_to(&interrupt.settings, false, true, None)?;
+        self.interrupt.stage = Stage::Active;
+        Ok(())
+    }
+
+    /// Sees whether the one under way has come to its end, or was broken off, and whether it is unlocked.
+    pub(super) fn settle_interrupt(&mut self) {
+        let arrived = self.motor.has_arrived();
+        if self.interrupt.stage == Stage::Active {
+            let done = self.in_position_at().filter(|at| *at <= self.now);
+            let broken = self.motor.phase() != Phase::Moving && !arrived;
+            self.interrupt.stage = match done {
+                Some(at) => Stage::Done { at },
+                None if broken => Stage::None,
+                None => Stage::Active,
+            };
+            if self.interrupt.stage != Stage::Active {
+                self.lock_interrupt();
+            }
+        }
+        self.interrupt.locked &= !self.inputs.has(Input::InterruptUnlock);
+    }
+
+    /// Another motion takes its place.
+    pub(super) fn replace_interrupt(&mut self) {
+        if std::mem::take(&mut self.interrupt.stage) == Stage::Active {
+            self.lock_interrupt();
+        }
+    }
+
+    /// One has run.
+    fn lock_interrupt(&mut self) {
+        self.interrupt.locked = self.interrupt_rule() == Some(InterruptRule::Locks);
+    }
+
+    fn interrupt_rule(&self) -> Option<InterruptRule> {
+        let interrupt = self.model.wiring.axis.interrupt.as_ref()?;
+        interrupt.rule.get(|row| self.bank.value(&self.model, row))
+    }
+
+    /// Is one under way, and has one just come to its end?
+    pub(super) fn interrupt_shows(&self) -> (bool, bool) {
+        match (self.interrupt.stage, self.interrupt_done_at()) {
+            (Stage::Active, at) if at.is_none_or(|at| at > self.now) => (true, false),
+            (_, Some(at)) => (false, at <= self.now && self.now < at + self.interrupt_done_time()),
+            (_, None) => (false, false),
+        }
+    }
+
+    /// When one that has come to its end is told of no longer.
+    pub(super) fn interrupt_forgotten_at(&self) -> Option<Instant> {
+        Some(self.interrupt_done_at()? + self.interrupt_done_time())
+    }
+
+    fn interrupt_done_at(&self) -> Option<Instant> {
+        match self.interrupt.stage {
+            Stage::None => None,
+            Stage::Active => self.in_position_at(),
+            Stage::Done { at } => Some(at),
+        }
+    }
+
+    fn interrupt_done_time(&self) -> Duration {
+        let time = self.threshold(Threshold::InterruptDoneTime).unwrap_or(0.0);
+        Duration::try_from_secs_f64(time).unwrap_or_default()
+    }
+}

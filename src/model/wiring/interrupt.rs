@@ -1,0 +1,55 @@
+//! Interrupt positioning, compiled: the rows that it goes by, and whether its signals go with it.
+
+use super::choice::Choice;
+use super::compile::Wirer;
+use super::segment_rows::MOVE;
+use crate::model::raw::RawInterrupt;
+use crate::problem::{Path, Problem};
+use crate::words::{Input, InterruptRule, Output, RowId, Setting, Word};
+
+/// A move that takes the place of a motion under way.
+#[derive(Debug)]
+pub struct Interrupt {
+    /// The rows that it goes by.
+    pub settings: Vec<(Setting, RowId)>,
+    /// May it start?
+    pub rule: Choice<InterruptRule>,
+}
+
+impl Interrupt {
+    /// Every row of it.
+    pub(super) fn rows(&self) -> impl Iterator<Item = RowId> {
+        self.settings.iter().map(|(_, row)| *row).chain(self.rule.row())
+    }
+}
+
+impl Wirer<'_> {
+    pub(super) fn interrupt(&mut self, raw: Option<&RawInterrupt>, path: &Path, inputs: &[Input]) {
+        if let Some(raw) = raw {
+            let settings = self.segment_settings(&raw.quantities, 0, &MOVE, path);
+            let rule = match &raw.rule {
+                None => Some(Choice::Fixed(InterruptRule::Free)),
+                raw => self.words_chosen(raw, "rule for interrupt positioning", &path.key("rule")),
+            };
+            self.wiring.axis.interrupt = rule.map(|rule| Interrupt { settings, rule });
+        }
+        let starts = inputs.contains(&Input::InterruptStart);
+        if raw.is_some() && !starts {
+            let what = "changes nothing: no input is `interrupt_start`";
+            self.problems
+                .push(Problem::key(path.clone(), what).advise("wire it, or leave this out"));
+        }
+        let others = [Input::InterruptStart, Input::InterruptUnlock, Input::InterruptInhibit];
+        let others = others.into_iter().filter(|it| inputs.contains(it)).map(Word::name);
+        let outputs = [Output::InterruptActive, Output::InterruptDone];
+        let outputs = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
+        let names: Vec<_> = others.chain(outputs).collect();
+        if raw.is_none() {
+            for name in names {
+                let what = format!("`{name}` changes nothing without axis.interrupt");
+                let path = Path::root().key("signals");
+                self.problems.push(Problem::key(path, what).advise("leave it out"));
+            }
+        }
+    }
+}
