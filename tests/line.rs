@@ -4,6 +4,7 @@
 
 mod ascii;
 mod foreign;
+mod lengthless;
 mod rtu;
 mod shared;
 mod tcp;
@@ -45,7 +46,7 @@ fn one(model: &str, strict: bool) -> Rig {
     let rig = crate::kit::rig(model, &[], &DeviceSpec::default());
     match strict {
         false => rig,
-        true => rig.with_framing(Framing::Rtu { gap: STRICT_GAP, patient: false }),
+        true => rig.with_framing(Framing::Rtu { silence: STRICT_GAP, patience: None }),
     }
 }
 

@@ -271,7 +271,8 @@ fn orders() -> impl Strategy<Value = Vec<(u64, Happening)>> {
 
 /// Ten seconds of a drive, looked at in between at `slices`.
 fn live(model: &str, happenings: &[(u64, Happening)], slices: &[u64]) -> (Vec<Event>, Vec<u8>) {
-    let (mut bus, link) = bus(model, Framing::Rtu { gap: GAP, patient: true });
+    let (mut bus, link) =
+        bus(model, Framing::Rtu { silence: Duration::from_millis(4), patience: Some(GAP) });
     let (mut events, mut sent) = (Vec::new(), Vec::new());
     let mut looks: Vec<(u64, Option<&Happening>)> = slices.iter().map(|at| (*at, None)).collect();
     looks.extend(happenings.iter().map(|(at, happening)| (*at, Some(happening))));

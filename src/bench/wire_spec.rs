@@ -17,7 +17,7 @@ pub struct WireSpec {
     pub silence: f64,
 }
 
-/// Silence that a patient line waits for at least: schedulers and USB adapters stretch a pause inside a
+/// Silence that a patient line waits for at least where the CRC does not fit: schedulers and USB adapters stretch a pause inside a
 /// frame to 3-16 ms.
 pub const PATIENT_GAP: Duration = Duration::from_millis(20);
 
@@ -54,9 +54,7 @@ impl WireSpec {
             return Framing::Ascii { gap: ASCII_GAP.mul_f64(rate) };
         }
         let silence = self.mode.settings.silence(self.silence);
-        match self.strict {
-            true => Framing::Rtu { gap: silence.mul_f64(rate), patient: false },
-            false => Framing::Rtu { gap: silence.max(PATIENT_GAP).mul_f64(rate), patient: true },
-        }
+        let patience = (!self.strict).then(|| silence.max(PATIENT_GAP).mul_f64(rate));
+        Framing::Rtu { silence: silence.mul_f64(rate), patience }
     }
 }

@@ -10,7 +10,14 @@ use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
 
 /// What a link heard, detached from its buffer so that drives and links can be touched again.
 enum Taken {
-    Request { unit: u8, pdu: Pdu },
+    /// `answer` is set where the exception bit makes it an answer rather than a request.
+    Request {
+        unit: u8,
+        pdu: Pdu,
+        answer: bool,
+    },
+    /// To every drive of the line.
+    Broadcast(Pdu),
     BadCrc(What),
     Told(What),
     Lost(What),
@@ -24,15 +31,11 @@ impl Bus {
                 self.release_late(link);
             }
             match taken {
-                // The exception bit makes it an answer: our own, come back through a 2-wire adapter, or
-                // one of a second drive at our address. Answering it would never end.
-                Taken::Request { unit, pdu }
-                    if pdu.first().is_some_and(|it| it & EXCEPTION != 0) =>
-                {
+                Taken::Request { unit, pdu, answer: true } => {
                     self.emit(What::Foreign { unit, pdu, answer: true });
                 }
-                Taken::Request { unit: BROADCAST, pdu } => self.broadcast(link, pdu),
-                Taken::Request { unit, pdu } => self.answer(link, unit, pdu),
+                Taken::Request { unit, pdu, .. } => self.answer(link, unit, pdu),
+                Taken::Broadcast(pdu) => self.broadcast(link, pdu),
                 Taken::BadCrc(what) => self.answer_bad_crc(link, what),
                 Taken::Told(what) => self.emit(what),
                 Taken::Lost(what) => {
@@ -45,11 +48,14 @@ impl Bus {
 
     fn take(&mut self, link: LinkId, now: Instant) -> Option<Taken> {
         let it = self.links.get_mut(&link)?;
-        let sole = it.sole && self.drives.len() == 1 && self.drives[0].is_powered();
+        let (tcp, sole) = (it.tcp, self.drives.len() == 1 && self.drives[0].is_powered());
         Some(match it.line.next(now, &self.units)? {
-            Heard::Request(adu) => request(adu),
-            // 255 on TCP: the only drive there is.
-            Heard::Foreign(Foreign::Request(adu)) if sole && adu.unit == 0xFF => request(adu),
+            // Modbus TCP lets a client say 0 or 255 for "whoever is there" (messaging on TCP/IP, 4.4.1.2).
+            Heard::Request(adu) if adu.unit == BROADCAST && !(tcp && sole) => broadcast(adu, tcp),
+            Heard::Foreign(Foreign::Request(adu)) if adu.unit == 0xFF && tcp && sole => {
+                request(adu, tcp)
+            }
+            Heard::Request(adu) => request(adu, tcp),
             Heard::Foreign(foreign) => Taken::Told(told(foreign)),
             Heard::BadCrc { bytes, crc } => {
                 Taken::BadCrc(What::BadCrc { frame: Frame::from_slice(bytes), crc, answered: None })
@@ -68,7 +74,9 @@ impl Bus {
         let addressed = self.by_unit[usize::from(unit)];
         let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
         let now = self.now;
-        let mut strike = self.faults.strike(now, unit, &request);
+        // Whoever says 0 or 255 on TCP means this drive, and a rule about its unit means that too.
+        let asked = if addressed.is_some() { unit } else { self.drive(id).unit() };
+        let mut strike = self.faults.strike(now, asked, &request);
         let mut repeated = None;
         let adu = Adu { unit, pdu: &request };
         let function = adu.function();
@@ -142,15 +150,26 @@ impl Taken {
     /// Does a master say it? Then late replies meet it.
     fn is_request(&self) -> bool {
         match self {
-            Self::Request { pdu, .. } => pdu.first().is_none_or(|it| it & EXCEPTION == 0),
+            Self::Request { answer, .. } => !answer,
+            Self::Broadcast(_) => true,
             Self::Told(what) => matches!(what, What::Foreign { answer: false, .. }),
             Self::BadCrc(_) | Self::Lost(_) => false,
         }
     }
 }
 
-fn request(adu: Adu<'_>) -> Taken {
-    Taken::Request { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu) }
+/// On a serial line the exception bit makes it an answer: our own, come back through a 2-wire adapter, or one of a
+/// second drive at our address. Answering it would never end. A TCP client says nothing but requests.
+fn request(adu: Adu<'_>, tcp: bool) -> Taken {
+    let answer = !tcp && adu.function() & EXCEPTION != 0;
+    Taken::Request { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu), answer }
+}
+
+fn broadcast(adu: Adu<'_>, tcp: bool) -> Taken {
+    match request(adu, tcp) {
+        Taken::Request { pdu, answer: false, .. } => Taken::Broadcast(pdu),
+        answer => answer,
+    }
 }
 
 fn told(foreign: Foreign<'_>) -> What {

@@ -33,6 +33,7 @@ use crate::wire::{BROADCAST, Frame};
 use agenda::Agenda;
 use held::{Held, Ticket, Timed};
 use others::Others;
+use outlet::LatencyTimer;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -63,6 +64,8 @@ pub struct Bus {
     agenda: Agenda,
     faults: Faults,
     habits: Habits,
+    /// The timer of the adapter in front of the master, if there is one.
+    adapter: Option<LatencyTimer>,
     held: Held,
     /// Bytes on the wire to the master.
     leaving: Timed,
@@ -74,8 +77,8 @@ pub struct Bus {
 #[derive(Debug)]
 struct Link {
     line: Line,
-    /// Modbus TCP lets a client say 255 for "whoever is there" (messaging on TCP/IP, 3.1.3).
-    sole: bool,
+    /// A client of Modbus TCP.
+    tcp: bool,
     /// When the last character of a reply has left.
     free: Instant,
     /// What the adapter is still collecting.
@@ -100,6 +103,7 @@ impl Bus {
             agenda: Agenda::default(),
             faults: Faults::default(),
             habits: Habits::default(),
+            adapter: None,
             held: Held::default(),
             leaving: Timed::default(),
             others: None,
@@ -124,9 +128,9 @@ impl Bus {
     pub fn open(&mut self, framing: Framing) -> LinkId {
         let id = LinkId(self.next_link);
         self.next_link += 1;
-        let sole = framing == Framing::Mbap;
+        let tcp = framing == Framing::Mbap;
         let line = Line::new(framing);
-        self.links.insert(id, Link { line, sole, free: Instant::ZERO, lump: None });
+        self.links.insert(id, Link { line, tcp, free: Instant::ZERO, lump: None });
         id
     }
 

@@ -7,16 +7,48 @@
 use super::{Bus, LinkId, Output};
 use crate::event::DriveId;
 use crate::fault::{Habits, Pacing};
+use crate::rng::Fork;
 use crate::time::{Duration, Instant};
 use crate::wire::Frame;
 
 /// Bytes that fill a lump: a packet of full speed USB less the two bytes of status that adapters put first.
 const LUMP: usize = 62;
 
+/// No rule of faults can have this name, so that none draws the same.
+const STREAM: &str = "(chunk)";
+
+/// The latency timer of a USB adapter. It runs freely: when it ends has nothing to do with when bytes arrive.
+#[derive(Debug, Clone, Copy)]
+pub struct LatencyTimer {
+    period: Duration,
+    /// When it ends for the first time, less than a period after time 0.
+    phase: Duration,
+}
+
+impl LatencyTimer {
+    /// With a phase drawn from `fork`, in microseconds.
+    fn new(period: Duration, fork: Fork) -> Self {
+        let last = (period.as_micros() as u64).saturating_sub(1);
+        Self { period, phase: Duration::from_micros(fork.stream(0).between(0, last)) }
+    }
+
+    /// When it ends next after `at`.
+    fn ends_after(self, at: Instant) -> Instant {
+        let first = Instant::ZERO + self.phase;
+        if at < first {
+            return first;
+        }
+        let into = at.since(first).as_nanos() % self.period.as_nanos();
+        at + (self.period - Duration::from_nanos(into as u64))
+    }
+}
+
 impl Bus {
     /// Gives the line its habits, in place of those that it had.
     pub fn set_habits(&mut self, habits: Habits) {
         let is_same = habits.chatter == self.habits.chatter;
+        let fork = self.faults.fork(STREAM);
+        self.adapter = habits.chunk.map(|latency| LatencyTimer::new(latency, fork));
         self.habits = habits;
         if !is_same {
             self.invite_others();
@@ -64,10 +96,10 @@ impl Bus {
 
     /// Passes bytes on whose last character has just ended: nobody here has sent them.
     pub(super) fn pass(&mut self, link: LinkId, frame: &Frame) {
-        match self.habits.chunk {
+        match self.adapter {
             None => self.leave(self.now, link, *frame),
-            Some(latency) => {
-                frame.iter().for_each(|byte| self.collect(link, latency, self.now, *byte));
+            Some(timer) => {
+                frame.iter().for_each(|byte| self.collect(link, timer, self.now, *byte));
             }
         }
     }
@@ -82,20 +114,20 @@ impl Bus {
     fn arrive(&mut self, link: LinkId, frame: &Frame, begins: Instant) {
         let ends = begins + self.characters(frame.len());
         self.links.get_mut(&link).into_iter().for_each(|it| it.free = ends);
-        let Some(latency) = self.habits.chunk else { return self.leave(ends, link, *frame) };
+        let Some(timer) = self.adapter else { return self.leave(ends, link, *frame) };
         for (i, byte) in frame.iter().enumerate() {
-            self.collect(link, latency, begins + self.characters(i + 1), *byte);
+            self.collect(link, timer, begins + self.characters(i + 1), *byte);
         }
     }
 
-    /// The adapter of `link` gets a byte at `at`. It hands over what it has when a packet is full, and
-    /// `latency` after the first byte of it.
-    fn collect(&mut self, link: LinkId, latency: Duration, at: Instant, byte: u8) {
+    /// The adapter of `link` gets a byte at `at`. It hands over what it has when a packet is full, and whenever
+    /// its timer ends.
+    fn collect(&mut self, link: LinkId, timer: LatencyTimer, at: Instant, byte: u8) {
         let Some(it) = self.links.get_mut(&link) else { return };
         let open = it.lump.filter(|(due, _)| at < *due);
         let lump = open.and_then(|ticket| Some((ticket, self.leaving.get_mut(ticket)?)));
         let Some((ticket, lump)) = lump else {
-            let ticket = self.leaving.until(at + latency, link, Frame::from_slice(&[byte]));
+            let ticket = self.leaving.until(timer.ends_after(at), link, Frame::from_slice(&[byte]));
             it.lump = Some(ticket);
             return;
         };

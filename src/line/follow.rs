@@ -34,7 +34,7 @@ impl Follower {
 
     /// Names a good frame that is not for us, and remembers it if it is a request.
     pub fn follow<'a>(&mut self, bytes: &'a [u8], adu: Adu<'a>) -> Foreign<'a> {
-        if self.answer_len(bytes) == Some(bytes.len()) {
+        if self.is_answer(bytes) {
             self.pending = None;
             return Foreign::Response(adu);
         }
@@ -56,8 +56,18 @@ impl Follower {
         self.pending = None;
     }
 
+    /// Is the good frame `bytes` the answer we wait for? Where its function tells no length, whatever comes next is.
+    fn is_answer(&self, bytes: &[u8]) -> bool {
+        match (self.answer_len(bytes), self.pending) {
+            (None, Some(pending)) if rtu::response_len(bytes).is_none() => {
+                bytes[..2] == [pending.unit, pending.function]
+            }
+            (len, _) => len == Some(bytes.len()),
+        }
+    }
+
     /// Length of `bytes` as the answer we wait for, or `None` if they can't be that.
-    fn answer_len(&self, bytes: &[u8]) -> Option<usize> {
+    pub fn answer_len(&self, bytes: &[u8]) -> Option<usize> {
         let pending = self.pending?;
         let (unit, function) = (*bytes.first()?, *bytes.get(1)?);
         if unit != pending.unit || function & !EXCEPTION != pending.function {

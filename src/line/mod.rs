@@ -1,9 +1,10 @@
 //! From bytes to frames: where one ends, whose it is, and what is only noise.
 //!
 //! A [`Line`] is one byte stream with its framing. It knows time and lengths and nothing of what a
-//! request means. RTU has two ways to end a frame (serial line, 2.5.1.1): [`Framing::Rtu`] `patient`
-//! closes as soon as length and CRC agree, else after silence; `strict` after silence only. Patient is
-//! for ports, where schedulers and USB adapters stretch a pause inside a frame to many times t3.5.
+//! request means. RTU has two ways to end a frame (serial line, 2.5.1.1): a strict line does so after a
+//! silence of t3.5 and not before; a patient one as soon as length and CRC agree, after t3.5 where at least
+//! the CRC fits, and else only after a longer silence. Patient is for ports, where schedulers and USB
+//! adapters stretch a pause inside a frame to many times t3.5.
 
 mod ascii;
 mod follow;
@@ -21,12 +22,12 @@ use crate::wire::{Adu, Coding, Frame, NoiseCause};
 /// How frames are told apart on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Framing {
-    /// RTU. `gap` of silence ends a frame; a patient line does not wait for it where it need not.
+    /// RTU.
     Rtu {
-        /// Silence that ends a frame.
-        gap: Duration,
-        /// Close as soon as length and CRC agree?
-        patient: bool,
+        /// Silence that ends a frame, t3.5; on a patient line only one whose CRC fits.
+        silence: Duration,
+        /// A patient line: silence that ends anything. `None` makes it a strict one.
+        patience: Option<Duration>,
     },
     /// ASCII. `gap` is the longest pause between two characters of a frame; the standard says 1 s.
     Ascii {
@@ -117,7 +118,7 @@ impl Line {
     /// A silent line.
     pub fn new(framing: Framing) -> Self {
         let framer = match framing {
-            Framing::Rtu { gap, patient } => Framer::Rtu(rtu::Rtu::new(gap, patient)),
+            Framing::Rtu { silence, patience } => Framer::Rtu(rtu::Rtu::new(silence, patience)),
             Framing::Ascii { gap } => Framer::Ascii(ascii::Ascii::new(gap)),
             Framing::Mbap => Framer::Mbap(mbap::Mbap::new()),
         };
@@ -150,6 +151,11 @@ impl Line {
             Framer::Ascii(ascii) => ascii.deadline(),
             Framer::Mbap(_) => None,
         }
+    }
+
+    /// Is what was received so far a whole frame that only waits for silence? What comes next is another one.
+    pub fn waits_for_silence_only(&self) -> bool {
+        matches!(&self.framer, Framer::Rtu(rtu) if rtu.waits_for_silence_only())
     }
 
     /// When bytes came last, where time counts.

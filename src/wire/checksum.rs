@@ -9,6 +9,17 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     CRC16.checksum(bytes)
 }
 
+/// The lengths at which the last two bytes of the beginning of `bytes` are the CRC of what stands before them.
+pub(super) fn crc_fits(bytes: &[u8]) -> impl Iterator<Item = usize> {
+    let mut digest = CRC16.digest();
+    // Over its own CRC this CRC is 0.
+    let residues = bytes.iter().map(move |byte| {
+        digest.update(&[*byte]);
+        digest.clone().finalize()
+    });
+    residues.enumerate().filter(|(_, residue)| *residue == 0).map(|(i, _)| i + 1)
+}
+
 /// LRC of ASCII frames (serial line, 6.2.1): two's complement of the sum of the bytes.
 pub fn lrc(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0u8, |sum, byte| sum.wrapping_add(*byte)).wrapping_neg()

@@ -2,6 +2,7 @@
 //!
 //! Lengths are facts of the protocol. Whether a frame has ended is decided in `line`.
 
+use super::checksum::crc_fits;
 use super::function::EXCEPTION;
 use super::{Adu, Frame, crc16};
 
@@ -39,6 +40,11 @@ pub fn decode(bytes: &[u8]) -> Result<Adu<'_>, BadCrc> {
     }
 }
 
+/// Where a frame that begins with `bytes` could end: the lengths, shortest first, at which its CRC fits.
+pub fn ends(bytes: &[u8]) -> impl Iterator<Item = usize> {
+    crc_fits(bytes).filter(|len| (MIN..=MAX).contains(len))
+}
+
 /// Length of the request that begins with `bytes`, if its function tells and enough of it is there.
 pub fn request_len(bytes: &[u8]) -> Option<usize> {
     match *bytes.get(1)? {
@@ -73,6 +79,14 @@ mod tests {
         assert_eq!(format!("{frame:?}"), "01 03 15 07 00 02 71 C6");
         assert_eq!(decode(&frame), Ok(Adu { unit: 1, pdu: &[3, 0x15, 7, 0, 2] }));
         assert_eq!(decode(&[1, 3, 0, 0]), Err(BadCrc { got: 0, want: 0x2140 }));
+    }
+
+    #[test]
+    fn a_frame_may_end_where_its_crc_fits() {
+        let two = [&*encode(9, &[8, 0, 0, 1, 2]), &*encode(1, &[3, 0, 0, 0, 1])].concat();
+        assert_eq!(ends(&two).collect::<Vec<_>>(), [8]);
+        assert_eq!(ends(&two[..7]).next(), None);
+        assert_eq!(ends(&two[8..]).collect::<Vec<_>>(), [8]);
     }
 
     #[test]

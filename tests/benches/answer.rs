@@ -26,7 +26,10 @@ fn in_process() {
     let model = model.load(&Default::default()).expect("a valid model");
     let mut bus = Bus::new();
     bus.add(model.into(), &Default::default(), 0);
-    let link = bus.open(Framing::Rtu { gap: Duration::from_millis(20), patient: true });
+    let link = bus.open(Framing::Rtu {
+        silence: Duration::from_millis(4),
+        patience: Some(Duration::from_millis(20)),
+    });
     let request = hex("01 03 00 0A 00 02 E4 09").expect("hex");
     let mut now = Instant::ZERO;
     let answer = median(200_000, || {

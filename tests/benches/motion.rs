@@ -95,7 +95,10 @@ fn median(hour: &Hour, powered: bool) -> (f64, usize) {
 
 fn run(hour: &Hour, powered: bool) -> usize {
     let (mut bus, unit) = bus(hour);
-    let link = bus.open(Framing::Rtu { gap: Duration::from_millis(20), patient: true });
+    let link = bus.open(Framing::Rtu {
+        silence: Duration::from_millis(4),
+        patience: Some(Duration::from_millis(20)),
+    });
     if !powered {
         let trip = Command::Raise { drive: DriveId(0), cause: AlarmCause::OverVoltage };
         bus.command(Instant::ZERO, trip).expect("an alarm of the model");

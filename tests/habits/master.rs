@@ -39,7 +39,8 @@ async fn a_master_waits_for_a_paced_reply() {
 async fn a_master_puts_lumps_together() {
     let (seen, took) = reads("chunk: 16ms", Duration::ZERO).await;
     assert_eq!(seen, [Some(100); 40]);
-    assert!(took >= Duration::from_millis(16));
+    // Whatever is left of the period, and the timer of the runtime.
+    assert!(took > Duration::ZERO && took <= Duration::from_millis(17), "{took:?}");
     let (seen, _) = reads("chunk: 4ms, pacing: line", Duration::ZERO).await;
     assert_eq!(seen, [Some(100); 40]);
 }

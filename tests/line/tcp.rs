@@ -1,12 +1,13 @@
 //! Modbus TCP: the length field says all, nothing waits, and a stream that lies is closed.
 
-use crate::kit::{drain, line_of, text_of};
+use crate::kit::{bench_line, drain, line_of, text_of};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Bus, LinkId};
 use drivemu::event::What;
 use drivemu::line::Framing;
 use drivemu::time::Instant;
 use drivemu::wire::mbap::encode;
+use drivemu::words::Cause;
 
 /// A port with a YAKO drive as unit 1 on it.
 fn port() -> (Bus, LinkId) {
@@ -112,30 +113,64 @@ fn good_requests_before_a_lie() {
     assert_eq!((drained.sent, drained.closed), (answer(1, 1), true));
 }
 
+/// A unit row that holds no usable address, such as 0, does not make a drive unreachable here.
 #[test]
 fn who_answers() {
     let (mut bus, link) = port();
-    for unit in (0..=255).filter(|unit| ![1, 255].contains(unit)) {
+    for unit in 2..255 {
         assert_eq!(send(&mut bus, link, &read(1, unit)), [0_u8; 0], "unit {unit}");
     }
-    // 255 is whoever is there, where there is only one.
-    assert_eq!(send(&mut bus, link, &read(5, 255)), answer(5, 255));
-    assert_eq!(
-        send(&mut bus, link, &encode(6, 255, &[6, 0, 0, 0, 1])),
-        *encode(6, 255, &[0x86, 6])
-    );
-    let (mut bus, link) = port_of("k-series");
-    assert_eq!(send(&mut bus, link, &encode(1, 255, &[3, 1, 0x30, 0, 1])), [0_u8; 0]);
-    let asked = encode(1, 2, &[3, 1, 0x30, 0, 1]);
-    assert_eq!(send(&mut bus, link, &asked), *encode(1, 2, &[3, 2, 1, 0xF4]));
+    // 0 and 255 are whoever is there, where there is only one.
+    for unit in [0, 255] {
+        assert_eq!(send(&mut bus, link, &read(5, unit)), answer(5, unit));
+        let write = encode(6, unit, &[6, 0, 0x23, 0, 60]);
+        assert_eq!(send(&mut bus, link, &write), *write);
+        let refused = send(&mut bus, link, &encode(6, unit, &[6, 0, 0, 0, 1]));
+        assert_eq!(refused, *encode(6, unit, &[0x86, 6]));
+    }
 }
 
+/// Among several drives 0 is a broadcast, as on a serial line, and 255 is nobody.
 #[test]
-fn a_broadcast_is_executed_and_not_answered() {
+fn who_answers_among_several() {
+    let (mut bus, link) = port_of("k-series");
+    let [read, write] = [[3, 1, 0x30, 0, 1], [6, 1, 0x30, 0, 7]];
+    assert_eq!(send(&mut bus, link, &encode(1, 255, &read)), [0_u8; 0]);
+    assert_eq!(send(&mut bus, link, &encode(1, 2, &read)), *encode(1, 2, &[3, 2, 1, 0xF4]));
+    assert_eq!(send(&mut bus, link, &encode(1, 0, &read)), [0_u8; 0]);
+    assert_eq!(send(&mut bus, link, &encode(1, 0, &write)), [0_u8; 0]);
+    for unit in [1, 2] {
+        assert_eq!(send(&mut bus, link, &encode(3, unit, &read)), *encode(3, unit, &[3, 2, 0, 7]));
+    }
+}
+
+/// A rule about the drive's unit is about what the drive is asked under 0 and 255, too.
+#[test]
+fn faults_act_whatever_the_drive_is_called() {
+    for unit in [0, 1, 255] {
+        let text = "lines: [{tcp: '127.0.0.1:0', drives: [{model: yako-closed-loop}], \
+                    faults: [{do: exception, code: 4, unit: 1}]}]";
+        let mut bus = bench_line(text).bus(0);
+        let link = bus.open(Framing::Mbap);
+        assert_eq!(send(&mut bus, link, &read(1, unit)), *encode(1, unit, &[0x83, 4]));
+    }
+}
+
+/// On a serial line the exception bit makes an answer; a TCP client says nothing but requests.
+#[test]
+fn a_function_with_the_exception_bit_is_refused() {
     let (mut bus, link) = port();
-    assert_eq!(send(&mut bus, link, &encode(1, 0, &[6, 0, 0x23, 0, 7])), [0_u8; 0]);
-    let got = send(&mut bus, link, &read(2, 1));
-    assert_eq!(got, *encode(2, 1, &[3, 2, 0, 7]));
+    let now = bus.now();
+    bus.receive(now, link, &encode(1, 1, &[0x83, 2]));
+    let drained = drain(&mut bus);
+    assert_eq!(drained.sent, *encode(1, 1, &[0x83, 2]));
+    let refused = drained.events.iter().any(|it| match it.what {
+        What::Transaction(it) => it.refusal.is_some_and(|it| it.cause == Cause::Function),
+        _ => false,
+    });
+    assert!(refused, "{:?}", drained.events);
+    let (mut bus, link) = port_of("hcfa-x");
+    assert_eq!(send(&mut bus, link, &encode(1, 1, &[0xFF])), *encode(1, 1, &[0xFF, 1]));
 }
 
 #[test]
@@ -161,8 +196,6 @@ fn every_function_code_and_length() {
             let pdu = [&[function][..], &vec![0; len]].concat();
             let got = send(&mut bus, link, &encode(1, 1, &pdu));
             match function {
-                // With the exception bit it is an answer, and gets none.
-                0x80.. => assert_eq!(got, [0_u8; 0], "{function} {len}"),
                 3 | 6 | 16 => assert_eq!(got[7], function | 0x80, "{function} {len}"),
                 _ => assert_eq!(got, *encode(1, 1, &[function | 0x80, 2]), "{function} {len}"),
             }

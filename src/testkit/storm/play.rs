@@ -71,6 +71,8 @@ struct Before {
     banks: Vec<Bank>,
     units: Vec<Option<DriveId>>,
     coding: Coding,
+    /// A frame was waiting for its end.
+    pending: bool,
 }
 
 impl<'a> Player<'a> {
@@ -229,7 +231,8 @@ impl<'a> Player<'a> {
     fn before(&self) -> Before {
         let banks = self.bus.drives().map(|(_, drive)| drive.bank().clone()).collect();
         let units = (0..=u8::MAX).map(|unit| self.bus.find(unit)).collect();
-        Before { at: self.bus.now(), banks, units, coding: self.coding() }
+        let pending = self.bus.silence_at(self.link).is_some();
+        Before { at: self.bus.now(), banks, units, coding: self.coding(), pending }
     }
 
     fn drain(&mut self) -> Vec<Seen> {
@@ -262,7 +265,8 @@ impl<'a> Player<'a> {
         command: Option<&Command>,
     ) -> Result<(), String> {
         let answers = |unit: u8| before.units[usize::from(unit)];
-        self.replies.check(seen, &Context { coding: before.coding, answers: &answers })?;
+        let (coding, pending) = (before.coding, before.pending);
+        self.replies.check(seen, &Context { coding, answers: &answers, pending })?;
         let drives: Vec<_> = self.bus.drives().map(|(_, drive)| drive).collect();
         let idle = command.is_none() && !rows::may_change(seen);
         if idle && drives.iter().zip(&before.banks).any(|(drive, bank)| drive.bank() != bank) {

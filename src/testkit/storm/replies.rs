@@ -19,9 +19,11 @@ pub enum Seen {
     Told(What),
 }
 
-/// Which drive answered to a unit before the call, and how frames are coded.
+/// How things were before the call: how frames are coded, which drive answered to a unit, and whether a frame was
+/// waiting for its end, so that one call may close two.
 pub struct Context<'a> {
     pub coding: Coding,
+    pub pending: bool,
     pub answers: &'a dyn Fn(u8) -> Option<DriveId>,
 }
 
@@ -49,6 +51,8 @@ impl Replies {
                 }
                 _ => None,
             };
+            // That one is about the second of two requests, which no drive saw.
+            let struck = struck.filter(|it| !context.pending || !it.spares_the_drive());
             match what {
                 What::Transaction(it) => {
                     addressed(it, context)?;
@@ -166,7 +170,7 @@ impl Replies {
 /// The drive that executed a request is the one that was asked.
 fn addressed(it: &Transaction, context: &Context<'_>) -> Result<(), String> {
     let asked = (context.answers)(it.unit);
-    let anybody = context.coding == Coding::Mbap && it.unit == 0xFF;
+    let anybody = context.coding == Coding::Mbap && [0, 0xFF].contains(&it.unit);
     match asked == Some(it.drive) || anybody && asked.is_none() {
         true => Ok(()),
         false => Err(format!("drive {} answered for unit {}", it.drive.0, it.unit)),
@@ -207,5 +211,12 @@ fn same(got: &[u8], want: &[u8]) -> Result<(), String> {
     match got == want {
         true => Ok(()),
         false => Err(format!("{} left where {} belongs", hex(got), hex(want))),
+    }
+}
+
+impl Mishap {
+    /// Did no drive see the request?
+    fn spares_the_drive(self) -> bool {
+        matches!(self, Self::RequestLost | Self::Exception(_) | Self::Busy)
     }
 }

@@ -27,8 +27,11 @@ static LINE: LazyLock<BenchLine> = LazyLock::new(|| {
 fuzz_target!(|input: &[u8]| {
     let Some((framing, mut rest)) = input.split_first() else { return };
     let framing = match framing % 4 {
-        0 => Framing::Rtu { gap: Duration::from_millis(20), patient: true },
-        1 => Framing::Rtu { gap: Duration::from_millis(4), patient: false },
+        0 => Framing::Rtu {
+        silence: Duration::from_millis(4),
+        patience: Some(Duration::from_millis(20)),
+    },
+        1 => Framing::Rtu { silence: Duration::from_millis(4), patience: None },
         2 => Framing::Ascii { gap: GAP },
         _ => Framing::Mbap,
     };
