@@ -12,6 +12,8 @@ pub enum Dimension {
     None,
     /// Position, in counts of the drive.
     Position,
+    /// Position, in increments of the encoder.
+    Increments,
     /// Counts for each revolution.
     Resolution,
     /// Speed of revolution.
@@ -46,6 +48,7 @@ pub struct Unit {
 /// Symbol, dimension, base units for each.
 const SYMBOLS: &[(&str, Dimension, f64)] = &[
     ("counts", Dimension::Position, 1.0),
+    ("inc", Dimension::Increments, 1.0),
     ("counts/rev", Dimension::Resolution, 1.0),
     ("rpm", Dimension::Speed, 1.0),
     ("rpm/s", Dimension::Acceleration, 1.0),

@@ -56,12 +56,12 @@ fn roles() -> String {
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
     }
-    let thresholds = "Numbers that outputs go by, whenever somebody looks: `quantities` says which row holds each, or \
+    let thresholds = "Numbers that outputs and an alarm go by, at any time: `quantities` says which row holds each, or \
                       gives a number with its unit.";
     section::<Threshold>(&mut out, "Thresholds", thresholds);
     out.push('\n');
     for threshold in Threshold::ALL {
-        self::units(&mut out, threshold.name(), &[threshold.dimension()]);
+        self::units(&mut out, threshold.name(), threshold.dimensions());
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");

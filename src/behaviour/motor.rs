@@ -59,8 +59,8 @@ pub struct Wants {
     pub soft_limits: Option<[i64; 2]>,
     /// How a limit stops it.
     pub limit_stop: LimitStop,
-    /// Counts of deviation that are too many.
-    pub deviation: Option<i64>,
+    /// Most counts between the axis and its command.
+    pub deviation: Option<f64>,
 }
 
 /// One axis.
@@ -89,6 +89,8 @@ pub struct Motor {
     jog_spent: bool,
     /// The last move or homing has come to its end.
     arrived: bool,
+    /// It has told that it is too far from its command, and still is.
+    deviates: bool,
     homing: Option<Box<Homing>>,
     due: Due,
     told: VecDeque<Stage>,
@@ -118,6 +120,7 @@ impl Motor {
             wants: Wants::default(),
             jog_spent: false,
             arrived: false,
+            deviates: false,
             homing: None,
             due: Due::default(),
             told: VecDeque::with_capacity(8),

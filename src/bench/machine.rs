@@ -114,7 +114,7 @@ fn is_wired(wiring: &Wiring, signal: Input) -> bool {
 }
 
 fn looks_for_index(wiring: &Wiring) -> bool {
-    let waits = |step: Step| matches!(step.until, Until::Index(_));
+    let waits = |step: Step| matches!(step.until, Until::Index(_) | Until::SameIndex);
     let looks = |it: &Method| it.index || it.all_steps().any(waits);
     wiring.homing.iter().flat_map(|it| it.methods.values()).any(looks)
 }

@@ -231,11 +231,14 @@ fn goes_by(model: &Model, id: RowId) -> String {
     let axis = &model.wiring.axis;
     let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
+    let encoder =
+        (axis.encoder == Some(Counts::Row(id))).then_some("encoder increments per revolution");
     let segments = axis.segments.rows().any(|row| row == id).then_some("segments");
     let thresholds = model.wiring.thresholds.iter();
     let thresholds =
         thresholds.filter(|(_, it)| *it == Number::Row(id)).map(|(threshold, _)| threshold.name());
-    let names: Vec<_> = settings.chain(counts).chain(segments).chain(thresholds).collect();
+    let names: Vec<_> =
+        settings.chain(counts).chain(encoder).chain(segments).chain(thresholds).collect();
     if names.is_empty() { "settings".into() } else { names.join(", ") }
 }
 

@@ -5,7 +5,7 @@ use super::Drive;
 use crate::behaviour::Trip;
 use crate::event::Change;
 use crate::model::AlarmStop;
-use crate::words::AlarmCause;
+use crate::words::{AlarmCause, HomeEnd};
 
 impl Drive {
     /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.
@@ -14,6 +14,7 @@ impl Drive {
         let trip = Trip { cause, code: alarm.code, resettable: alarm.resettable };
         let (is_first, was_braking) = (self.servo.alarm().is_none(), self.servo.is_braking());
         let brakes = alarm.stop != AlarmStop::Coast && self.motor.is_moving();
+        self.motor.lose_origin(HomeEnd::Alarm);
         self.servo.trip(trip, brakes, &mut |change| self.changes.push_back(change));
         if is_first {
             self.remember(alarm.code);

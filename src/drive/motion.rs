@@ -6,7 +6,9 @@ use crate::behaviour::{Control, Stage, Wants};
 use crate::event::{Change, Ignored};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
-use crate::words::{Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule};
+use crate::words::{
+    Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule, Threshold,
+};
 
 impl Drive {
     /// Where the axis stands, in the drive's coordinate and its units.
@@ -122,11 +124,11 @@ impl Drive {
 
     /// Stops the axis for an alarm.
     pub(super) fn brake(&mut self, stop: AlarmStop) {
-        let decel = self.axis().slope(Setting::AlarmDecel, 0.0).unwrap_or(0.0);
-        match stop {
-            AlarmStop::Coast => {}
-            AlarmStop::Ramp => self.motor.stop_with(self.now, decel),
-            AlarmStop::Quick => self.motor.stop_with(self.now, f64::INFINITY),
+        match (stop, self.axis().slope(Setting::AlarmDecel, 0.0)) {
+            (AlarmStop::Coast, _) => {}
+            (AlarmStop::Ramp, Some(decel)) => self.motor.stop_with(self.now, decel),
+            (AlarmStop::Ramp, None) => self.motor.stop(self.now),
+            (AlarmStop::Quick, _) => self.motor.stop_with(self.now, f64::INFINITY),
         }
         self.tell_stages(None);
     }
@@ -181,7 +183,7 @@ impl Drive {
             switches: self.inputs,
             soft_limits: self.soft_limits(),
             limit_stop: self.chosen(&self.model.wiring.limits.stop).unwrap_or_default(),
-            deviation: self.axis().counts(Setting::Deviation),
+            deviation: self.threshold(Threshold::Deviation),
         }
     }
 

@@ -41,7 +41,17 @@ impl Drive {
 
     /// Counts for one revolution.
     pub(super) fn counts_per_rev(&self) -> f64 {
-        match self.model.wiring.axis.counts_per_rev {
+        self.per_rev(self.model.wiring.axis.counts_per_rev)
+    }
+
+    /// Increments of the encoder in counts. They are counts where a row has none of them in a revolution.
+    pub(super) fn counts(&self, increments: f64) -> f64 {
+        let per_rev = self.model.wiring.axis.encoder.map_or(0.0, |it| self.per_rev(it));
+        if per_rev > 0.0 { increments * self.counts_per_rev() / per_rev } else { increments }
+    }
+
+    fn per_rev(&self, counts: Counts) -> f64 {
+        match counts {
             Counts::Fixed(counts) => counts.into(),
             Counts::Row(row) => self.bank.value(&self.model, row) as f64,
         }
@@ -88,9 +98,14 @@ impl Settings<'_> {
         Ramp { speed, accel, decel, start_speed }
     }
 
-    /// What a row holds in counts or in units of position.
+    /// What a row holds in counts, in units of position or in increments of the encoder.
     pub(super) fn counts(self, setting: Setting) -> Option<i64> {
-        self.value(setting).map(|(value, _)| value.round() as i64)
+        let (value, dimension) = self.value(setting)?;
+        let counts = match dimension {
+            Dimension::Increments => self.drive.counts(value),
+            _ => value,
+        };
+        Some(counts.round() as i64)
     }
 
     /// Counts for what a row holds in units of position.

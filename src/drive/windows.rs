@@ -4,6 +4,7 @@ use super::Drive;
 use crate::behaviour::Control;
 use crate::model::Number;
 use crate::time::{Duration, Instant};
+use crate::units::Dimension;
 use crate::words::{Output, Outputs, Threshold};
 
 impl Drive {
@@ -85,11 +86,13 @@ impl Drive {
         Duration::try_from_secs_f64(settle).unwrap_or_default()
     }
 
-    /// The number in the base unit of its dimension.
+    /// The number in the base unit of its dimension, increments in counts.
     pub(super) fn threshold(&self, threshold: Threshold) -> Option<f64> {
-        Some(match self.model.wiring.threshold(threshold)? {
-            Number::Fixed(number) => number,
-            Number::Row(row) => self.bank.value(&self.model, row) as f64 * self.unit_of(row).scale,
-        })
+        let (value, unit) = match self.model.wiring.threshold(threshold)? {
+            Number::Fixed(number) => (1.0, number),
+            Number::Row(row) => (self.bank.value(&self.model, row) as f64, self.unit_of(row)),
+        };
+        let value = value * unit.scale;
+        Some(if unit.dimension == Dimension::Increments { self.counts(value) } else { value })
     }
 }

@@ -229,7 +229,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             format!("stopped by the {} {kind}", side(*forward))
         }
         Change::Hits { at } => format!("runs against a hard stop at {at}"),
-        Change::Deviates => "is farther behind than its parameters allow".into(),
+        Change::Deviates => "position deviation above its threshold".into(),
         Change::Homes { method } => format!("homing method {method} begins"),
         Change::Seeks { method, step, mrpm } => {
             let (until, rpm) = (why::until(step.until), rpm(*mrpm));

@@ -82,6 +82,7 @@ pub fn until(until: Until) -> String {
     match until {
         Until::Edge(it) => edge(it),
         Until::Index(None) => "an index pulse".into(),
+        Until::SameIndex => "the same index pulse".into(),
         Until::Index(Some(it)) => format!("an index pulse after {}", edge(it)),
         Until::Collision => "a hard stop".into(),
     }

@@ -115,8 +115,8 @@ pub struct Shown {
 /// A number that the model fixes, or that a row holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Number {
-    /// In the base unit of its dimension.
-    Fixed(f64),
+    /// One of this unit.
+    Fixed(Unit),
     /// In the row's unit.
     Row(RowId),
 }
@@ -257,6 +257,8 @@ pub struct Servo {
 pub struct Axis {
     /// Counts for one revolution.
     pub counts_per_rev: Counts,
+    /// Increments of the encoder for one revolution, where rows count them.
+    pub encoder: Option<Counts>,
     /// How long it runs out without power.
     pub coast: Duration,
     /// How fast a move makes up for a deviation, 1/s; `None` where it has none.
@@ -286,12 +288,12 @@ pub struct Gear {
     pub denominator: RowId,
 }
 
-/// Counts for one revolution.
+/// Counts or increments for one revolution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counts {
     /// This many, not 0.
     Fixed(u32),
-    /// As many as the row says, which can't hold 0.
+    /// As many as the row says. For counts it can't hold 0.
     Row(RowId),
 }
 
@@ -301,6 +303,7 @@ impl Default for Axis {
         let coast = Duration::from_millis(200);
         Self {
             counts_per_rev: Counts::Fixed(1),
+            encoder: None,
             coast,
             position_gain: None,
             pole_pairs: 1,

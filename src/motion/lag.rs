@@ -5,7 +5,7 @@
 //! acceleration that has a closed form, applied segment by segment.
 
 use super::trajectory::Segment;
-use super::{State, Trajectory};
+use super::{State, Trajectory, search};
 use crate::time::{Duration, Instant};
 
 /// Stretches between two turns are looked at in so many parts: a position may turn round inside one.
@@ -98,7 +98,7 @@ impl Lag {
     /// some between them.
     pub fn marks(&self, of: &Trajectory, after: Instant) -> Vec<Instant> {
         let seams = of.spans().map(|(_, until)| of.instant(until));
-        let turns = self.turns(of).map(|(at, ())| at);
+        let turns = self.turns(of).map(|(at, _)| at);
         let mut turns: Vec<_> = seams.chain(turns).filter(|at| *at > after).collect();
         turns.sort_unstable();
         turns.dedup();
@@ -115,15 +115,33 @@ impl Lag {
         marks
     }
 
-    /// Instants between which the deviation is monotone.
-    fn turns(&self, of: &Trajectory) -> impl Iterator<Item = (Instant, ())> {
+    /// The first instant after `after` at which the deviation gets to be more than `most` counts, either way.
+    pub fn exceeds_at(&self, of: &Trajectory, most: f64, after: Instant) -> Option<Instant> {
+        let gain = self.gain?;
+        let beyond = |sign: f64| {
+            search::first(
+                after,
+                self.turns(of),
+                |at| sign * self.deviation(of, at) > most,
+                |(deviation, segment)| {
+                    of.instant(segment.from + comes_to(gain, deviation, segment, sign * most))
+                },
+            )
+        };
+        [beyond(1.0), beyond(-1.0)].into_iter().flatten().min()
+    }
+
+    /// Instants between which the deviation is monotone, each with the segment before it and the deviation with
+    /// which the trajectory enters that.
+    fn turns<'a>(&self, of: &'a Trajectory) -> impl Iterator<Item = (Instant, (f64, &'a Segment))> {
         let mut deviation = self.deviation;
         let spans = self.gain.into_iter().flat_map(|gain| of.spans().map(move |it| (gain, it)));
         spans.flat_map(move |(gain, (segment, until))| {
             // What would turn after the segment is over does not.
             let turn = (segment.from + turn(gain, deviation, segment)).min(until);
+            let entered = deviation;
             deviation = behind(gain, deviation, segment, until - segment.from);
-            [turn, until].map(|t| (of.instant(t), ()))
+            [turn, until].map(|t| (of.instant(t), (entered, segment)))
         })
     }
 }
@@ -140,6 +158,24 @@ fn behind(gain: f64, deviation: f64, segment: &Segment, x: f64) -> f64 {
     let share = -(-gain * x).exp_m1();
     let lagged = share / gain;
     deviation * (1.0 - share) + segment.start.speed * lagged + segment.accel * (x - lagged) / gain
+}
+
+/// Seconds into `segment` after which the deviation, `deviation` at its start, comes to `target`: exact at constant
+/// speed, else as near as Newton gets in a few steps.
+fn comes_to(gain: f64, deviation: f64, segment: &Segment, target: f64) -> f64 {
+    let growth = segment.accel / gain;
+    let steady = segment.start.speed / gain - growth / gain;
+    let rest = deviation - steady;
+    let at_constant_speed = (rest / (target - steady)).ln() / gain;
+    if growth == 0.0 {
+        return at_constant_speed;
+    }
+    let step = |x: f64| {
+        let decayed = rest * (-gain * x).exp();
+        x - (steady + growth * x + decayed - target) / (growth - gain * decayed)
+    };
+    let start = ((target - steady) / growth).max(0.0);
+    (0..4).fold(start, |x, _| step(x))
 }
 
 /// Seconds into `segment` at which the deviation turns round; zero if it does not.
@@ -167,6 +203,18 @@ mod tests {
         assert!((lag.feedback(&of, late).speed - 2000.0).abs() < 1e-6);
         assert_eq!(lag.settles_at(&of, 5.0), None);
         assert_eq!(lag.position(&of, late), of.position(late) - 50);
+    }
+
+    #[test]
+    fn exceeds_a_limit_by_a_logarithm() {
+        let from = State { position: 0.0, speed: 1000.0 };
+        let of = Trajectory::to_speed(Instant::ZERO, from, 1000.0, 1e4, 1e4);
+        let lag = Lag::new(50.0);
+        // It tends to 20 counts: half of that takes ln(2) / 50 s.
+        let at = lag.exceeds_at(&of, 10.0, Instant::ZERO).expect("it gets so far behind");
+        assert!((at.as_secs_f64() - 2f64.ln() / 50.0).abs() < 2e-9, "{at}");
+        assert_eq!(lag.exceeds_at(&of, 20.0, Instant::ZERO), None);
+        assert_eq!(Lag::NONE.exceeds_at(&of, 0.0, Instant::ZERO), None);
     }
 
     #[test]
@@ -204,6 +252,29 @@ mod tests {
                 let want = of.speed(of.instant(middle)) - gain * d(middle);
                 // What a difference quotient over rounded instants is worth.
                 prop_assert!((got - want).abs() < 1e-2 * (1.0 + want.abs()), "{} {}", got, want);
+            }
+        }
+
+        #[test]
+        fn exceeds_a_limit_when_looking_says_so(
+            of in trajectories(), gain in 1.0..500.0, start in -100.0..100.0, most in 0.5..3000.0, part in 0.0..1.0,
+        ) {
+            let lag = Lag { deviation: start, ..Lag::new(gain) };
+            let instants = instants(&of, 400);
+            let after = instants[(part * 399.0) as usize];
+            let over = |at| lag.deviation(&of, at).abs() > most;
+            let found = lag.exceeds_at(&of, most, after);
+            if let Some(at) = found {
+                prop_assert!(at > after && over(at) && !over(at - Duration::from_nanos(1)));
+            }
+            let mut was = over(after);
+            for &at in instants.iter().filter(|at| **at > after) {
+                if found.is_some_and(|found| found <= at) {
+                    break;
+                }
+                let is = over(at);
+                prop_assert!(was || !is, "missed before {}", at.as_nanos());
+                was = is;
             }
         }
 

@@ -126,13 +126,22 @@ impl Machine {
         // The first mark to be passed is one of the two neighbours.
         let low = below(of.position(after), every, offset)?;
         let high = low.checked_add(every)?;
-        let within = |mark| self.hard_stop.is_none_or(|[low, high]| low < mark && mark <= high);
-        let pulse = |mark: i64, way| {
-            let at = of.crossing(mark as f64, way, after).filter(|_| within(mark))?;
-            Some(IndexPulse { at, mark, way })
-        };
+        let pulse = |mark, way| self.index_at(mark, way, of, after);
         let pulses = [pulse(low, Way::Falling), pulse(high, Way::Rising)];
         pulses.into_iter().flatten().min_by_key(|it| it.at)
+    }
+
+    /// When `mark`, an index mark, is passed after `after` in the given way.
+    pub fn index_at(
+        &self,
+        mark: i64,
+        way: Way,
+        of: &Trajectory,
+        after: Instant,
+    ) -> Option<IndexPulse> {
+        let within = self.hard_stop.is_none_or(|[low, high]| low < mark && mark <= high);
+        let at = of.crossing(mark as f64, way, after).filter(|_| within)?;
+        Some(IndexPulse { at, mark, way })
     }
 
     /// Where the axis is if it is told to be at `state`: a hard stop holds it.

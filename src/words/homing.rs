@@ -33,6 +33,8 @@ pub enum Until {
     Edge(Edge),
     /// An index pulse comes; with an edge, the first one after it.
     Index(Option<Edge>),
+    /// The index pulse comes again that ended an earlier step.
+    SameIndex,
     /// The axis is pressed against a hard stop.
     Collision,
 }
@@ -43,7 +45,7 @@ impl Until {
         match self {
             Self::Edge(edge) => Some(edge),
             Self::Index(edge) => edge,
-            Self::Collision => None,
+            Self::SameIndex | Self::Collision => None,
         }
     }
 }
@@ -204,6 +206,7 @@ words! {
     HomeEnd {
         Limit "limit" "a limit ended its way",
         TimeLimit "time_limit" "its time was over",
+        Alarm "alarm" "an alarm was raised",
         Stopped "stopped" "the axis was stopped",
         PowerOff "power_off" "the power stage went off",
     }

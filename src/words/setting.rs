@@ -31,8 +31,7 @@ words! {
         HomeTimeLimit "home.time_limit" "most time that a homing may take; 0 is no limit",
         SoftLimitPos "limit.soft_pos" "greatest position, where soft limits are in force",
         SoftLimitNeg "limit.soft_neg" "least position, where soft limits are in force",
-        Deviation "limit.deviation" "counts that the axis may be behind before alarm `position_deviation`",
-        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops; read when the alarm is raised",
+        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops, if not as its motion would; read when the alarm is raised",
     }
 }
 
@@ -45,10 +44,9 @@ impl Setting {
             Self::MoveTarget
             | Self::HomeWay
             | Self::HomeCoordinate
-            | Self::HomeCollision
             | Self::SoftLimitPos
-            | Self::SoftLimitNeg
-            | Self::Deviation => &[Dimension::Position],
+            | Self::SoftLimitNeg => &[Dimension::Position],
+            Self::HomeCollision => &[Dimension::Position, Dimension::Increments],
             Self::MoveAbsolute => &[Dimension::None],
             Self::RunSpeed
             | Self::RunStartSpeed

@@ -1,10 +1,10 @@
-//! Numbers that outputs go by: a model says which row holds them, or fixes them.
+//! Numbers that outputs and an alarm go by: a model says which row holds them, or fixes them.
 
 use super::words;
 use crate::units::Dimension;
 
 words! {
-    /// A number that an output is held against, whenever somebody looks at it.
+    /// A number that something of the axis is held against at any time.
     Threshold {
         ZeroSpeed "zero.speed" "`zero_speed` shows up to this speed; 0 if left out",
         TurningSpeed "turning.speed" "`turning` shows above this speed",
@@ -17,21 +17,25 @@ words! {
         NearWindow "near.window" "how far the axis may be behind its command for `near`",
         AgreesWindow "agrees.window" "how near `speed_agrees` takes a speed for the one that was ordered",
         CommandSpeed "command.speed" "`command_present` shows above this speed; 0 if left out",
+        Deviation "limit.deviation" "how far the axis may be from its command before alarm `position_deviation`",
     }
 }
 
 impl Threshold {
-    /// What it measures; the row's unit must fit.
-    pub fn dimension(self) -> Dimension {
+    /// What it may measure; the row's unit must fit one of them.
+    pub fn dimensions(self) -> &'static [Dimension] {
         match self {
             Self::ZeroSpeed
             | Self::TurningSpeed
             | Self::ReachedSpeed
             | Self::ReachedWindow
             | Self::AgreesWindow
-            | Self::CommandSpeed => Dimension::Speed,
-            Self::PositionWindow | Self::CoincidesWindow | Self::NearWindow => Dimension::Position,
-            Self::PositionSettle | Self::InterruptDoneTime => Dimension::Time,
+            | Self::CommandSpeed => &[Dimension::Speed],
+            Self::PositionWindow | Self::CoincidesWindow | Self::NearWindow => {
+                &[Dimension::Position]
+            }
+            Self::Deviation => &[Dimension::Position, Dimension::Increments],
+            Self::PositionSettle | Self::InterruptDoneTime => &[Dimension::Time],
         }
     }
 }

@@ -41,9 +41,9 @@ fn alarms(model: &Model, file: &Value) -> String {
     for alarm in alarms {
         let (name, about) = (alarm.cause.name(), alarm.cause.about());
         let stop = match alarm.stop {
-            AlarmStop::Coast => "runs out",
-            AlarmStop::Ramp => "slows down",
-            AlarmStop::Quick => "stands at once",
+            AlarmStop::Coast => "coasts",
+            AlarmStop::Ramp => "decelerates, then the servo is off",
+            AlarmStop::Quick => "stops at once, then the servo is off",
         };
         let assumed = file[name]["assumed"].as_str().unwrap_or_default();
         let code = alarm.code;

@@ -133,7 +133,7 @@ pub fn hcfa(how: Hcfa, scene: &Scene) -> End {
                 None if rule >= 3 => End::LimitAlarm,
                 None => {
                     let limit = if search { high.max(scene.start) } else { low.min(scene.start) };
-                    let within = scene.every() + scene.slow_way(10_000) + 2;
+                    let within = scene.every() + scene.fast_way(10_000) + 2;
                     let sure = scene.mark_at_or_below(high - 1).is_some_and(|it| it > lowest);
                     End::NextTo { limit, within, sure }
                 }
@@ -156,9 +156,9 @@ pub fn hcfa(how: Hcfa, scene: &Scene) -> End {
         _ => return End::Origin(origin),
     };
     let mark = if forward { scene.mark_above(origin) } else { scene.mark_at_or_below(origin) };
-    // The limit that is the origin does not end the way, but a hard stop does.
+    // The limit that is the origin does not end the way, but a hard stop beyond it holds the axis.
     if mode < 2 && forward == search {
-        return mark.map_or(End::Late, End::Origin);
+        return mark.map_or(End::Deviates, End::Origin);
     }
     match mark.filter(|mark| if forward { *mark < high } else { *mark > lowest }) {
         Some(mark) => End::Origin(mark),

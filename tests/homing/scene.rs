@@ -63,9 +63,9 @@ impl Scene {
         self.index().every
     }
 
-    /// Counts to slow down in from the slow speed, and one.
-    pub fn slow_way(&self, counts_per_rev: i64) -> i64 {
-        self.slow * self.slow * counts_per_rev * self.ramp_ms / (2 * self.fast * 60_000) + 1
+    /// Counts to slow down in from the fast speed, and one.
+    pub fn fast_way(&self, counts_per_rev: i64) -> i64 {
+        self.fast * counts_per_rev * self.ramp_ms / (2 * 60_000) + 1
     }
 
     /// The first index mark above `count` that the axis gets to.

@@ -29,8 +29,14 @@ fn each_threshold_counts() {
             }
             // 10000 counts take 174.7 ms, the lag 48.8 + 20 ms more, the signal itself 200 ms.
             Threshold::InterruptDoneTime => (Action::Enable, Output::InterruptDone, [400, 444]),
+            // 13107 counts a second behind are 5000 after 381.5 ms, and 10 ms that it takes to fall so far behind.
+            Threshold::Deviation => (Action::MoveStart, Output::Alarm, [391, 392]),
         };
-        let mut rig = acme(&DeviceSpec::default());
+        let mut spec = DeviceSpec::default();
+        if threshold == Threshold::Deviation {
+            spec.set.insert("P048".into(), 5000);
+        }
+        let mut rig = acme(&spec);
         give(&mut rig, Action::Enable);
         match threshold {
             Threshold::InterruptDoneTime => {

@@ -53,22 +53,19 @@ impl Motor {
 
     /// Finds out again what lies ahead.
     pub(super) fn look_ahead(&mut self, now: Instant) {
-        let hold = |side| self.pressed_at(side, now);
+        self.deviates &= self.is_deviating(now);
         let wait = self.homing.as_ref().map(|it| it.waits_for()).unwrap_or_default();
         self.due = Due {
             edge: self.next_edge(now),
             hit: self.machine.next_hit(&self.trajectory, now),
             leave: wait.limits_by_stop.then(|| self.next_leave(now)).flatten(),
-            collision: wait.collision.and_then(hold),
-            deviation: self.wants.deviation.and_then(hold),
+            collision: wait.collision.and_then(|counts| self.pressed_at(counts as f64, now)),
+            deviation: self.wants.deviation.and_then(|most| self.deviates_at(most, now)),
             soft: self.wants.soft_limits.and_then(|[low, high]| match self.forward {
                 true => self.trajectory.crossing(beyond(high), Way::Rising, now),
                 false => self.trajectory.crossing(low as f64, Way::Falling, now),
             }),
-            index: wait.index.and_then(|index| {
-                let way = if index.forward { Way::Rising } else { Way::Falling };
-                self.next_index(now, index.marks, way)
-            }),
+            index: wait.index.and_then(|index| self.next_index(now, index)),
             end: self.trajectory.end().filter(|_| self.is_moving()),
             time: wait.until,
         };
@@ -92,6 +89,7 @@ impl Motor {
         } else if let Some(pulse) = due.index.take_if(|it| it.at <= now) {
             self.home_found(now, pulse.mark);
         } else if take(&mut due.deviation, now) {
+            self.deviates = true;
             self.told.push_back(Stage::Deviates);
         } else if take(&mut due.soft, now) {
             self.obey_limits(now);
@@ -127,10 +125,26 @@ impl Motor {
         switches.into_iter().filter_map(edge).min()
     }
 
+    /// When the axis gets to be more than `most` counts from its command: a hard stop holds it, or it is too slow.
+    fn deviates_at(&self, most: f64, now: Instant) -> Option<Instant> {
+        if self.deviates || !self.wants.power {
+            return None;
+        }
+        if self.is_deviating(now) {
+            return Some(now);
+        }
+        let late = self.lag.exceeds_at(&self.trajectory, most, now);
+        [late, self.pressed_at(most, now)].into_iter().flatten().min()
+    }
+
+    fn is_deviating(&self, now: Instant) -> bool {
+        self.wants.deviation.is_some_and(|most| self.deviation(now).abs() > most)
+    }
+
     /// When the trajectory gets `counts` beyond the hard stop that holds the axis.
-    fn pressed_at(&self, counts: i64, now: Instant) -> Option<Instant> {
+    fn pressed_at(&self, counts: f64, now: Instant) -> Option<Instant> {
         let [low, high] = self.machine.hard_stop?;
-        let (low, high) = (low.saturating_sub(counts) as f64, beyond(high.saturating_add(counts)));
+        let (low, high) = (low as f64 - counts, (high as f64 + counts).next_up());
         let position = self.trajectory.state(now).position;
         if position < low || position >= high {
             return Some(now);

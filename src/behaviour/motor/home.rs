@@ -55,6 +55,8 @@ pub(super) struct Homing {
     doing: Doing,
     /// The switches as the last look found them.
     seen: Inputs,
+    /// The last index mark that ended a step.
+    mark: Option<i64>,
     origin: i64,
     until: Option<Instant>,
 }
@@ -86,6 +88,8 @@ pub(super) struct Waits {
 pub(super) struct WaitsForIndex {
     pub(super) forward: bool,
     pub(super) marks: Index,
+    /// The mark it has to be, if not any will do.
+    pub(super) only: Option<i64>,
 }
 
 impl Homing {
@@ -107,14 +111,16 @@ impl Homing {
         let step = self.step().filter(|_| matches!(self.doing, Doing::Seeking { .. }));
         let index = match (self.doing, step.map(|step| step.until)) {
             (Doing::Refining { .. }, _) => true,
-            (Doing::Seeking { armed }, Some(Until::Index(_))) => armed,
+            (Doing::Seeking { armed }, Some(Until::Index(_) | Until::SameIndex)) => armed,
             _ => false,
         };
         let marks = self.order.marks;
+        let same = step.is_some_and(|step| step.until == Until::SameIndex);
+        let only = self.mark.filter(|_| same);
         let forward = self.heading().filter(|_| index);
         let collides = step.is_some_and(|step| step.until == Until::Collision);
         Waits {
-            index: forward.map(|forward| WaitsForIndex { forward, marks }),
+            index: forward.map(|forward| WaitsForIndex { forward, marks, only }),
             collision: collides.then_some(self.order.collision),
             limits_by_stop: self.order.source != LimitSource::Switch,
             until: self.until,
@@ -135,6 +141,7 @@ impl Motor {
             fresh: true,
             doing: Doing::Ending,
             seen: Inputs::default(),
+            mark: None,
             origin: 0,
             until: order.time_limit.map(|time| now + time),
             order,
@@ -184,6 +191,9 @@ impl Motor {
         }
         let Some(step) = homing.step() else { return };
         homing.fresh = false;
+        if matches!(step.until, Until::Index(_)) {
+            homing.mark = Some(at);
+        }
         self.told.push_back(Stage::Finds(step, at));
         match step.then {
             Then::Ramp => {
@@ -224,8 +234,8 @@ impl Motor {
         self.brake(now);
     }
 
-    /// Something else takes the place of a homing.
-    pub(super) fn lose_origin(&mut self, why: HomeEnd) {
+    /// Ends a homing, if there is one, because of something else, which then says how the axis goes on.
+    pub fn lose_origin(&mut self, why: HomeEnd) {
         self.lose(why, false);
     }
 
@@ -244,7 +254,8 @@ impl Motor {
             homing.origin = here;
             return self.home_end(now);
         };
-        homing.doing = Doing::Seeking { armed: step.until == Until::Index(None) };
+        let armed = matches!(step.until, Until::Index(None) | Until::SameIndex);
+        homing.doing = Doing::Seeking { armed };
         let speed = match step.pace {
             Pace::Fast => homing.order.fast,
             Pace::Slow => homing.order.slow,
@@ -279,6 +290,8 @@ impl Motor {
                 homing.doing = Doing::Seeking { armed: true };
                 return self.look_ahead(now);
             }
+            // It goes back to where it has just been.
+            Some(Until::SameIndex) if seeking => return,
             // The origin is this very limit, and the index pulse may lie beyond it.
             _ if !seeking && homing.order.method.by == Some(ahead) => return,
             _ => {}
@@ -290,7 +303,7 @@ impl Motor {
         let turns = homing.fresh && !homing.order.method.at_limit.is_empty();
         if !turns && homing.until.is_none() {
             self.lose(HomeEnd::Limit, false);
-            return self.brake(now);
+            return self.stop_at_limit(now);
         }
         if turns {
             (homing.steps, homing.at, homing.fresh) = (homing.order.method.at_limit, 0, false);
@@ -372,11 +385,15 @@ impl Motor {
         switches
     }
 
-    /// The next index mark that is passed this way.
-    pub(super) fn next_index(&self, now: Instant, marks: Index, way: Way) -> Option<IndexPulse> {
-        let index = self.machine.index.or(Some(marks));
-        let machine = Machine { index, ..self.machine };
+    /// The next index mark that is passed and waited for.
+    pub(super) fn next_index(&self, now: Instant, waits: WaitsForIndex) -> Option<IndexPulse> {
+        let way = if waits.forward { Way::Rising } else { Way::Falling };
         // While the axis turns round it may pass marks the other way.
-        machine.next_index(&self.trajectory, self.trajectory.goes_at(way, now)?)
+        let after = self.trajectory.goes_at(way, now)?;
+        let index = self.machine.index.or(Some(waits.marks));
+        match waits.only {
+            Some(mark) => self.machine.index_at(mark, way, &self.trajectory, after),
+            None => Machine { index, ..self.machine }.next_index(&self.trajectory, after),
+        }
     }
 }

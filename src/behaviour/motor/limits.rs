@@ -43,6 +43,11 @@ impl Motor {
         }
         let soft = !self.wants.switches.has(limit(self.forward));
         self.told.push_back(Stage::Limit { forward: self.forward, soft });
+        self.stop_at_limit(now);
+    }
+
+    /// Ends a motion as a limit does.
+    pub(super) fn stop_at_limit(&mut self, now: Instant) {
         match self.wants.limit_stop {
             LimitStop::Coast => self.run_out(now),
             LimitStop::Quick => {

@@ -109,7 +109,7 @@ pub struct RawStep {
     /// `fast` or `slow`.
     pub at: String,
     /// Until what: a switch and `on` or `off` (`home_switch on`), `index`, `index after home_switch off`,
-    /// or `collision`.
+    /// `same index` (the one that ended an earlier step), or `collision`.
     pub to: String,
     /// `ramp`: stand, then the next step. `keep`: the next step without stopping. `origin`: this is it.
     pub then: String,

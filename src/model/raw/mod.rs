@@ -194,6 +194,7 @@ pub const KEYS: &[&str] = &[
     "digit",
     "enabled_at_power_on",
     "enabled_by",
+    "encoder",
     "fill",
     "finish",
     "first",

@@ -172,6 +172,9 @@ pub struct RawServo {
 pub struct RawAxis {
     /// Counts of the drive for one revolution: a number, or the row that holds it.
     pub counts_per_rev: RawCounts,
+    /// Increments of the encoder for one revolution, of which rows in `inc` count: a number, or the row that holds it.
+    /// While that holds 0 they are counts.
+    pub encoder: Option<RawCounts>,
     /// How long the axis runs out when its power stage goes off while it moves, from whatever speed
     /// (`200ms`, which is the default); `0s` stands at once.
     pub coast: Option<String>,
@@ -242,7 +245,7 @@ pub enum RawAlarmStop {
     /// Its power stage goes off and it runs out.
     #[default]
     Coast,
-    /// It slows down with `alarm.decel`; then its power stage goes off.
+    /// It slows down with `alarm.decel`, or without such a row as the motion itself would; then its power stage goes off.
     Ramp,
     /// It stands at once; then its power stage goes off.
     Quick,

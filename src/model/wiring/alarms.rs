@@ -65,21 +65,12 @@ impl Wirer<'_> {
                 self.without_motion("stop", &Path::root().key("alarms").key(name).key("stop"));
             }
         }
-        let ramp = self.wiring.alarms.iter().find(|alarm| alarm.stop == AlarmStop::Ramp);
-        let decel = Setting::AlarmDecel.name();
-        match (ramp, self.wiring.axis.setting(Setting::AlarmDecel)) {
-            (None, Some(_)) => {
-                let what = format!("`{decel}` changes nothing: no alarm stops with a ramp");
-                let path = Path::root().key("quantities").key(decel);
-                self.problems.push(Problem::key(path, what).advise("give one `stop: ramp`"));
-            }
-            (Some(alarm), None) => {
-                let what = format!("no row holds `{decel}`, with which it would slow down");
-                let path = Path::root().key("alarms").key(alarm.cause.name()).key("stop");
-                let advice = format!("add `{decel}: ROW` to `quantities`");
-                self.problems.push(Problem::value(path, what).advise(advice));
-            }
-            _ => {}
+        let ramps = self.wiring.alarms.iter().any(|alarm| alarm.stop == AlarmStop::Ramp);
+        if !ramps && self.wiring.axis.setting(Setting::AlarmDecel).is_some() {
+            let decel = Setting::AlarmDecel.name();
+            let what = format!("`{decel}` changes nothing: no alarm stops with a ramp");
+            let path = Path::root().key("quantities").key(decel);
+            self.problems.push(Problem::key(path, what).advise("give one `stop: ramp`"));
         }
     }
 }

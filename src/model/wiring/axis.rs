@@ -2,11 +2,11 @@
 //! and what changes nothing is told of.
 
 use super::compile::Wirer;
-use super::{Counts, Gear};
+use super::{Counts, Gear, Number};
 use crate::model::raw::{RawAxis, RawCounts, RawGear, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::{Dimension, Unit};
-use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Word};
+use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Threshold, Word};
 
 /// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
 struct Kind {
@@ -110,9 +110,14 @@ impl Wirer<'_> {
         self.interrupt(interrupt, &path.key("interrupt"), &inputs);
         self.homing_starts(&inputs, &actions);
         let Some(raw) = raw else { return };
-        if let Some(counts) = self.counts(&raw.counts_per_rev, &path.key("counts_per_rev")) {
+        let per_rev = path.key("counts_per_rev");
+        if let Some(counts) = self.per_rev(&raw.counts_per_rev, &per_rev) {
+            self.not_zero(counts, &per_rev);
             self.wiring.axis.counts_per_rev = counts;
         }
+        let encoder = raw.encoder.as_ref();
+        self.wiring.axis.encoder = encoder.and_then(|it| self.per_rev(it, &path.key("encoder")));
+        self.increments_fit(encoder.is_some(), &path);
         if let Some(coast) = self.duration(raw.coast.as_deref(), &path.key("coast")) {
             self.wiring.axis.coast = coast;
         }
@@ -179,7 +184,7 @@ impl Wirer<'_> {
         Some(Gear { numerator: numerator?, denominator: denominator? })
     }
 
-    fn counts(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
+    fn per_rev(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
         let row = match raw {
             RawCounts::Number(0) => {
                 let what = "a revolution has at least one count";
@@ -195,12 +200,42 @@ impl Wirer<'_> {
             let problem = Problem::value(path.clone(), what);
             self.problems.push(problem.advise("give the row `unit: counts/rev`"));
         }
+        Some(Counts::Row(row))
+    }
+
+    fn not_zero(&mut self, counts: Counts, path: &Path) {
+        let Counts::Row(row) = counts else { return };
+        let it = self.rows.map.row(row);
         if it.spans.iter().any(|(low, _)| *low <= 0) {
             let what = format!("{} may hold 0, and a revolution has at least one count", it.id);
             let problem = Problem::value(path.clone(), what);
             self.problems.push(problem.advise("give the row a `range` from 1 on"));
         }
-        Some(Counts::Row(row))
+    }
+
+    /// Rows in increments and what says how many of them make a revolution go together.
+    fn increments_fit(&mut self, known: bool, path: &Path) {
+        let settings =
+            self.wiring.axis.settings.iter().map(|(_, row)| self.rows.map.row(*row).unit);
+        let thresholds = self.wiring.thresholds.iter().map(|(_, number)| match number {
+            Number::Fixed(unit) => *unit,
+            Number::Row(row) => self.rows.map.row(*row).unit,
+        });
+        let used = settings.chain(thresholds).any(|it| it.dimension == Dimension::Increments);
+        let problem = match (used, known) {
+            (true, false) => Problem::key(
+                path.clone(),
+                "a row counts in `inc`, and nothing says how many make a revolution",
+            )
+            .advise("add `encoder: N`, or a row for N"),
+            (false, true) => Problem::key(
+                path.key("encoder"),
+                "`encoder` changes nothing: no row that is wired counts in `inc`",
+            )
+            .advise("leave it out"),
+            _ => return,
+        };
+        self.problems.push(problem);
     }
 
     /// A motion that something starts has the settings it needs; one that nothing starts has none.
@@ -255,11 +290,14 @@ impl Wirer<'_> {
         let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
         names.into_iter().for_each(|name| self.without_motion(name, &path));
         let path = Path::root().key("quantities");
-        let settings = [Setting::SoftLimitPos, Setting::SoftLimitNeg, Setting::Deviation];
-        for setting in settings {
+        for setting in [Setting::SoftLimitPos, Setting::SoftLimitNeg] {
             if self.wiring.axis.setting(setting).is_some() {
                 self.without_motion(setting.name(), &path.key(setting.name()));
             }
+        }
+        let deviation = Threshold::Deviation;
+        if self.wiring.threshold(deviation).is_some() {
+            self.without_motion(deviation.name(), &path.key(deviation.name()));
         }
         let moving = [
             Quantity::SpeedActual,

@@ -5,7 +5,7 @@ use super::compile::Wirer;
 use crate::model::RowId;
 use crate::model::raw::RawLimits;
 use crate::problem::{Path, Problem};
-use crate::words::{AlarmCause, Input, LimitStop, Output, Setting, SoftLimitRule, Word};
+use crate::words::{AlarmCause, Input, LimitStop, Output, Setting, SoftLimitRule, Threshold, Word};
 
 /// What limits do.
 #[derive(Debug, Default)]
@@ -41,8 +41,8 @@ impl Wirer<'_> {
             self.unused("soft", "no rows hold soft limits", &path);
         }
         self.limits_shown(&inputs, has_soft);
-        if self.wiring.axis.setting(Setting::Deviation).is_some() {
-            let name = Setting::Deviation.name();
+        if self.wiring.threshold(Threshold::Deviation).is_some() {
+            let name = Threshold::Deviation.name();
             let path = Path::root().key("quantities").key(name);
             self.needs_alarm(name, AlarmCause::PositionDeviation, path);
         }

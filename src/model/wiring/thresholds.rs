@@ -31,20 +31,21 @@ const USES: [(Output, Threshold, bool); 18] = [
 impl Wirer<'_> {
     /// `text` is a number with its unit, or a row.
     pub(super) fn threshold(&mut self, threshold: Threshold, text: &str, path: &Path) {
-        let (name, want) = (threshold.name(), threshold.dimension());
+        let (name, want) = (threshold.name(), threshold.dimensions());
         let number = match Unit::parse(text).filter(|_| text.contains(' ')) {
             Some(number) => {
-                if number.dimension != want {
-                    let symbols: Vec<_> = Unit::symbols_of(want).collect();
+                if !want.contains(&number.dimension) {
+                    let symbols: Vec<_> =
+                        want.iter().flat_map(|it| Unit::symbols_of(*it)).collect();
                     let what =
                         format!("`{name}` is in {}, and `{text}` is not", symbols.join(" or "));
                     self.problems.push(Problem::value(path.clone(), what));
                 }
-                Number::Fixed(number.scale)
+                Number::Fixed(number)
             }
             None => {
                 let Some(row) = self.row(text, path) else { return };
-                self.dimension(row, name, &[want], path);
+                self.dimension(row, name, want, path);
                 Number::Row(row)
             }
         };
@@ -97,7 +98,8 @@ impl Wirer<'_> {
                 self.problems.push(problem.advise(advice));
             }
         }
-        for (threshold, _) in self.wiring.thresholds.clone() {
+        let of_outputs = |it: &(Threshold, Number)| it.0 != Threshold::Deviation;
+        for (threshold, _) in self.wiring.thresholds.clone().into_iter().filter(of_outputs) {
             let of = |it: &&(Output, Threshold, bool)| it.1 == threshold;
             if !USES.iter().filter(of).any(|(output, ..)| self.is_shown(*output)) {
                 let name = threshold.name();

@@ -55,8 +55,10 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     if let WordOrder::Row { row, .. } = line.word_order {
         mark(row);
     }
-    if let Counts::Row(row) = wiring.axis.counts_per_rev {
-        mark(row);
+    for counts in [Some(wiring.axis.counts_per_rev), wiring.axis.encoder].into_iter().flatten() {
+        if let Counts::Row(row) = counts {
+            mark(row);
+        }
     }
     wiring.axis.reversed.into_iter().for_each(&mut mark);
     wiring.axis.gear.iter().flat_map(|it| [it.numerator, it.denominator]).for_each(&mut mark);

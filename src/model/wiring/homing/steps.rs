@@ -82,6 +82,14 @@ impl Wirer<'_> {
                 self.problems.push(Problem::value(path.index(i).key("then"), what));
             }
         }
+        let mut found = false;
+        for (i, step) in steps.iter().enumerate() {
+            if step.until == Until::SameIndex && !found {
+                let what = "no step before it waits for an index pulse";
+                self.problems.push(Problem::value(path.index(i).key("to"), what));
+            }
+            found |= matches!(step.until, Until::Index(_));
+        }
         Steps::new(&steps)
     }
 
@@ -96,6 +104,7 @@ impl Wirer<'_> {
         match text {
             "collision" => return Some(Until::Collision),
             "index" => return Some(Until::Index(None)),
+            "same index" => return Some(Until::SameIndex),
             _ => {}
         }
         let (index, edge) = match text.strip_prefix("index after ") {
@@ -107,8 +116,7 @@ impl Wirer<'_> {
             Some((name, "off")) => (name, false),
             _ => {
                 let what = format!("`{text}` is nothing to wait for");
-                let advice =
-                    "a switch with `on` or `off`, `index`, `index after SWITCH on`, or `collision`";
+                let advice = "a switch with `on` or `off`, `index`, `index after SWITCH on`, `same index`, or `collision`";
                 self.problems.push(Problem::value(path.clone(), what).advise(advice));
                 return None;
             }
