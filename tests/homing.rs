@@ -1,13 +1,17 @@
 //! Homing on machines of any geometry: the axis ends on the edge or index pulse that the method stands for, or the
 //! homing fails as the manual says, exactly when it cannot succeed.
 //!
-//! What a method stands for is said by `oracle.rs` without any steps. What cannot succeed: methods 3 to 6 and 19 to 22
+//! What a method stands for is said by `oracle.rs` without any steps. How it gets there, and how fast, is said by `print.rs` in the words of
+//! the manuals, and held against what a master reads by `speeds.rs`. What cannot succeed: methods 3 to 6 and 19 to 22
 //! with the axis on the wrong side of a home switch that does not reach to the end of travel; any method whose edge
 //! of the home switch lies beyond the end of travel; an index pulse that lies at a limit or beyond. Room for ramps is
 //! no condition: a hard stop does as well.
 
+mod course;
 mod oracle;
+mod print;
 mod scene;
+mod speeds;
 
 use drivemu::motion::Machine;
 use oracle::{End, Hcfa, cia402, hard_stop, hcfa};

@@ -68,6 +68,11 @@ impl Scene {
         self.fast * counts_per_rev * self.ramp_ms / (2 * 60_000) + 1
     }
 
+    /// The ramp in steps of 10 rpm/s.
+    pub fn acceleration(&self) -> i64 {
+        (self.fast * 100 / self.ramp_ms).max(1)
+    }
+
     /// The first index mark above `count` that the axis gets to.
     pub fn mark_above(&self, count: i64) -> Option<i64> {
         self.within((count - self.index().offset).div_euclid(self.every()) + 1)
@@ -84,6 +89,12 @@ impl Scene {
 
     pub fn with_stops(mut self) -> Self {
         self.machine.hard_stop = Some(self.stops);
+        self
+    }
+
+    /// Without hard stops.
+    pub fn without_stops(mut self) -> Self {
+        self.machine.hard_stop = None;
         self
     }
 
@@ -205,9 +216,33 @@ pub fn hcfa_x(how: Hcfa, scene: &Scene) -> Setting {
 }
 
 pub fn k_series(scene: &Scene) -> Setting {
-    let set =
-        [("reference_speed_to", scene.fast), ("reference_speed_off", scene.slow), ("comm_io", 1)];
+    let set = [
+        ("reference_speed_to", scene.fast),
+        ("reference_speed_off", scene.slow),
+        ("acceleration", scene.acceleration()),
+        ("comm_io", 1),
+    ];
     Setting::new("k-series", scene, &set, "01 06 0451 8001")
+}
+
+impl Setting {
+    /// A drive that homes from now on.
+    pub fn begin(&self) -> Rig {
+        let mut rig = rig(self.model, self.options, &self.spec);
+        rig.ask(self.start);
+        rig
+    }
+
+    /// What a master reads of the speed, in revolutions a minute.
+    pub fn read_speed(&self, rig: &mut Rig) -> i64 {
+        let answer = rig.ask(match self.model {
+            "hcfa-x" => "01 03 1501 0001",
+            "k-series" => "01 03 0420 0001",
+            _ => "01 03 000C 0001",
+        });
+        let word = answer.split_whitespace().skip(3).collect::<String>();
+        u16::from_str_radix(&word, 16).expect("a word").cast_signed().into()
+    }
 }
 
 /// How a homing went.
@@ -220,8 +255,7 @@ pub struct Outcome {
 
 /// Homes, looking at the axis after each of `slices`, in microseconds, and at the end.
 pub fn play(setting: &Setting, scene: &Scene, slices: &[u64]) -> Outcome {
-    let mut rig = rig(setting.model, setting.options, &setting.spec);
-    rig.ask(setting.start);
+    let mut rig = setting.begin();
     let kept = setting.model.starts_with("yako");
     let limit = Duration::from_secs(4000);
     let slices = slices.iter().map(|us| Duration::from_micros(*us)).chain(std::iter::repeat(limit));
