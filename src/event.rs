@@ -1,8 +1,10 @@
 //! What happened: the values that the log, the tests and later tools are made from. No text here.
 
 mod no_effect;
+mod replanned;
 
 pub use no_effect::{Ignored, Ordered};
+pub use replanned::Replanned;
 
 use crate::serial::Mode;
 use crate::time::{Duration, Instant};
@@ -306,6 +308,8 @@ pub enum Change {
         /// The condition that was met last of those that count; `None` where there is none.
         why: Option<Condition>,
     },
+    /// A motion under way goes by another setting from now on.
+    Replans(Replanned),
     /// It slows down to a standstill.
     Stops,
     /// Its power stage went off while it moved: it runs out.

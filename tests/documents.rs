@@ -13,7 +13,7 @@ use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
     Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, InterruptRule, Lasts,
     LimitRule, LimitSource, LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace,
-    Quantity, Setting, SoftLimitRule, Target, Then, Threshold, Word,
+    Quantity, Setting, SoftLimitRule, Taken, Target, Then, Threshold, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -49,13 +49,15 @@ fn roles() -> String {
     for quantity in Quantity::ALL {
         units(&mut out, quantity.name(), &[quantity.dimension()]);
     }
-    let settings = "Numbers that motions go by: `quantities` says which row holds each. They are read when \
-                    a motion starts.";
+    let settings = "Numbers that motions go by: `quantities` says which row holds each.";
     section::<Setting>(&mut out, "Settings", settings);
     out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move or run from its start speed, to the speed:\n\n");
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
     }
+    let taken = "When a value counts that is written to the row of a setting: `taken` in `quantities`, and \
+                 `settings_taken`, where the row's `applies` says nothing.";
+    section::<Taken>(&mut out, "Times of settings", taken);
     let thresholds = "Numbers that outputs and an alarm go by, at any time: `quantities` says which row holds each, or \
                       gives a number with its unit.";
     section::<Threshold>(&mut out, "Thresholds", thresholds);

@@ -21,8 +21,13 @@ pub enum Wait {
     Delay(Duration),
     /// A rising edge.
     Step,
-    /// The axis at a place, which it reaches at this instant if at all.
-    Position(Option<Instant>),
+    /// The axis at a place.
+    Position {
+        /// A count of the machine.
+        place: i64,
+        /// When it gets there, if at all.
+        at: Option<Instant>,
+    },
 }
 
 impl Wait {
@@ -30,7 +35,7 @@ impl Wait {
         match self {
             Self::Delay(_) => Condition::Delay,
             Self::Step => Condition::Step,
-            Self::Position(_) => Condition::Position,
+            Self::Position { .. } => Condition::Position,
         }
     }
 }
@@ -92,11 +97,23 @@ impl Chain {
         self.under_way = None;
     }
 
-    /// The axis stands in position from `at` on, which may be yet to come.
-    pub fn arrive(&mut self, at: Instant) {
-        self.under_way.iter_mut().for_each(|link| {
-            link.arrived.get_or_insert(at);
-        });
+    /// The axis stands in position from `at` on, which may be yet to come; what has not come by `now` may change.
+    pub fn arrive(&mut self, now: Instant, at: Instant) {
+        for link in self.under_way.iter_mut().filter(|it| it.arrived.is_none_or(|it| it > now)) {
+            link.arrived = Some(at);
+        }
+    }
+
+    /// Places that the axis has not come to by `now` it comes to when `reaches` says.
+    pub fn look(&mut self, now: Instant, reaches: impl Fn(i64) -> Option<Instant>) {
+        let waits = self.under_way.iter_mut().flat_map(|link| &mut link.rule.waits).flatten();
+        for wait in waits {
+            if let Wait::Position { place, at } = wait
+                && at.is_none_or(|at| at > now)
+            {
+                *at = reaches(*place);
+            }
+        }
     }
 
     /// The edge came. Does the segment under way wait for it?
@@ -141,7 +158,7 @@ impl Link {
         match wait {
             Wait::Delay(time) => self.arrived.map(|at| at + time),
             Wait::Step => self.stepped,
-            Wait::Position(at) => at,
+            Wait::Position { at, .. } => at,
         }
     }
 }
@@ -164,8 +181,8 @@ mod tests {
         chain.begin(ms(0), rule);
         chain.step(ms(30));
         chain.step(ms(35));
-        chain.arrive(ms(100));
-        chain.arrive(ms(105));
+        chain.arrive(ms(100), ms(100));
+        chain.arrive(ms(105), ms(105));
         let at = chain.deadline()?;
         assert_eq!(chain.due(ms(0)), None);
         chain.due(at).map(|why| (at, why))
@@ -173,11 +190,11 @@ mod tests {
 
     #[test]
     fn conditions_alone() {
-        let place = |at| Wait::Position(Some(ms(at)));
+        let place = |at| Wait::Position { place: 7, at: Some(ms(at)) };
         assert_eq!(done(&[DELAY], false, true), Some((ms(150), Some(Condition::Delay))));
         assert_eq!(done(&[Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
         assert_eq!(done(&[place(60)], false, true), Some((ms(60), Some(Condition::Position))));
-        assert_eq!(done(&[Wait::Position(None)], false, true), None);
+        assert_eq!(done(&[Wait::Position { place: 7, at: None }], false, true), None);
         // Without `through` the segment is done first.
         assert_eq!(done(&[Wait::Step], false, false), Some((ms(100), Some(Condition::Step))));
         assert_eq!(done(&[DELAY], false, false), Some((ms(150), Some(Condition::Delay))));
@@ -189,7 +206,7 @@ mod tests {
         assert_eq!(either, Some((ms(30), Some(Condition::Step))));
         let both = done(&[DELAY, Wait::Step], true, true);
         assert_eq!(both, Some((ms(150), Some(Condition::Delay))));
-        let never = Wait::Position(None);
+        let never = Wait::Position { place: 7, at: None };
         assert_eq!(done(&[never, Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
         assert_eq!(done(&[never, Wait::Step], true, true), None);
     }
@@ -207,7 +224,7 @@ mod tests {
         let mut steps = 0;
         chain.begin(ms(5), rule);
         while chain.is_under_way() {
-            chain.arrive(ms(5));
+            chain.arrive(ms(5), ms(5));
             assert_eq!(chain.due(ms(5)), Some(None));
             chain.begin(ms(5), rule);
             steps += 1;

@@ -8,29 +8,36 @@ use crate::time::{Duration, Instant};
 /// One watchdog.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Hold {
-    until: Option<(Instant, Duration)>,
+    /// When the master did its part last, while there is something to hold.
+    since: Option<Instant>,
+    /// How long it holds; `None` for ever.
+    time: Option<Duration>,
 }
 
 impl Hold {
     /// The master did its part: it holds for `time` from `now` on, or for ever.
     pub fn refresh(&mut self, now: Instant, time: Option<Duration>) {
-        self.until = time.map(|time| (now + time, time));
+        (self.since, self.time) = (Some(now), time);
+    }
+
+    /// From now on `time` counts from when the master did its part last.
+    pub fn retime(&mut self, time: Option<Duration>) {
+        self.time = time;
     }
 
     /// There is nothing to hold.
     pub fn stop(&mut self) {
-        self.until = None;
+        self.since = None;
     }
 
     /// When it is over.
     pub fn deadline(&self) -> Option<Instant> {
-        self.until.map(|(at, _)| at)
+        Some(self.since? + self.time?)
     }
 
     /// If its time is over: how long it held. It stops then.
     pub fn expired(&mut self, now: Instant) -> Option<Duration> {
-        let (_, held) = self.until.filter(|(at, _)| *at <= now)?;
-        self.until = None;
-        Some(held)
+        self.deadline().filter(|at| *at <= now)?;
+        self.since.take().map(|since| now.since(since))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! An order becomes a trajectory and a phase; after that nothing happens until something on the way does
 //! (`due.rs`): the trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the
-//! order and hold until the next one, so a deceleration written during a motion counts from the next motion on.
+//! order; who wants others on the way says so, and the rest is planned anew (`replan.rs`).
 //!
 //! The trajectory is what the axis is told. Where it is can be less: a hard stop holds it, and in a move, where the
 //! position is controlled, it runs behind by a lag, which goes along to the stop that may end the move. A run, a jog, a
@@ -11,36 +11,26 @@
 
 mod block;
 mod due;
+mod goal;
 mod home;
 mod limits;
 mod look;
+mod replan;
 
+pub use goal::{Ramp, Slope};
 pub use home::HomeOrder;
 pub use look::Control;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
-use crate::motion::{Lag, Machine, Move, State, Trajectory, Way};
+use crate::motion::{Lag, Machine, State, Trajectory, Way};
 use crate::time::{Duration, Instant};
 use crate::words::{HomeEnd, Inputs, LimitStop};
 use due::Due;
+use goal::Goal;
 use home::Homing;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
-
-/// A speed and how to get to it and from it; counts per second, the sign is the direction, and counts per
-/// second squared.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ramp {
-    /// Where to.
-    pub speed: f64,
-    /// Getting faster.
-    pub accel: f64,
-    /// Getting slower.
-    pub decel: f64,
-    /// A magnitude that is taken at once.
-    pub start_speed: f64,
-}
 
 /// What the levels ask for right now.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -52,7 +42,9 @@ pub struct Wants {
     /// Stand at once.
     pub quick_stop: bool,
     /// Jog; `None` for neither direction, or both.
-    pub jog: Option<Ramp>,
+    pub jog: Option<Jog>,
+    /// How a stop slows down that begins now, or is under way; `None` as the motion says.
+    pub decel: Option<Slope>,
     /// The signals of home switch and limits, among others.
     pub switches: Inputs,
     /// Positions of the machine that the axis must not leave, if such are in force.
@@ -61,6 +53,15 @@ pub struct Wants {
     pub limit_stop: LimitStop,
     /// Most counts between the axis and its command.
     pub deviation: Option<f64>,
+}
+
+/// A run that a level asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jog {
+    /// How it goes.
+    pub ramp: Ramp,
+    /// Does another level ask for it than for the one under way?
+    pub takes_over: bool,
 }
 
 /// One axis.
@@ -76,9 +77,8 @@ pub struct Motor {
     by_speed: bool,
     /// Where the motion goes in the end: the positive direction?
     forward: bool,
-    /// Slopes of a run and of a stop, from the order that started the motion.
-    accel: f64,
-    decel: f64,
+    /// What the motion is to come to.
+    goal: Goal,
     /// How long it runs out without power.
     coast: Duration,
     machine: Machine,
@@ -112,8 +112,7 @@ impl Motor {
             phase: Phase::Standing,
             by_speed: false,
             forward: true,
-            accel: 0.0,
-            decel: 0.0,
+            goal: Goal::None,
             coast,
             machine,
             blocked: None,
@@ -225,42 +224,56 @@ impl Motor {
         match wants.jog {
             None if matches!(self.phase, Phase::Jogging { .. }) => self.brake(now),
             None => {}
-            Some(ramp) => self.jog(now, ramp),
+            Some(jog) => self.jog(now, jog),
         }
+        wants.decel.into_iter().for_each(|decel| self.retune_stop(now, decel));
         self.advance(now);
     }
 
     /// Goes to `target`, given where it is.
     ///
     /// # Errors
-    /// Why it does not start: without power, while held, while it moves and may not `interrupt`, or into a
-    /// limit.
+    /// Why it does not start: without power, while held, while it moves and may not `interrupt`, into a
+    /// limit, or at a speed of 0.
     pub fn start_move(
         &mut self,
         now: Instant,
         target: impl FnOnce(i64) -> i64,
-        how: Move,
+        ramp: Ramp,
         interrupt: bool,
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
         let here = self.commanded(now);
         let target = target(here);
         self.may_go(now, target.saturating_sub(here) as f64)?;
-        let trajectory = Trajectory::to_position(now, self.lead(now).0, target, how);
-        (self.decel, self.forward) = (how.decel, target >= here);
+        if ramp.speed == 0.0 {
+            return Err(Ignored::NoSpeed);
+        }
+        let trajectory = ramp.reach(now, self.lead(now).0, target);
+        self.lose_origin(HomeEnd::Replaced);
+        (self.goal, self.forward) = (Goal::Position(target, ramp), target >= here);
         self.begin(now, trajectory, Phase::Moving);
         self.told.push_back(Stage::Moves(target));
         self.advance(now);
         Ok(())
     }
 
-    /// Goes at a speed until stopped.
+    /// Goes at a speed until stopped. A run at 0 that takes the place of another stops it.
     ///
     /// # Errors
-    /// Why it does not start: without power, while held, while it moves, or into a limit.
-    pub fn start_run(&mut self, now: Instant, ramp: Ramp) -> Result<(), Ignored> {
-        self.may_start(false)?;
+    /// Why it does not start: without power, while held, while it moves and may not `interrupt`, into a
+    /// limit, or at a speed of 0.
+    pub fn start_run(&mut self, now: Instant, ramp: Ramp, interrupt: bool) -> Result<(), Ignored> {
+        self.may_start(interrupt)?;
         self.may_go(now, ramp.speed)?;
+        match (ramp.speed == 0.0, self.phase) {
+            (true, Phase::Running) => {
+                self.stop(now);
+                return Ok(());
+            }
+            (true, _) => return Err(Ignored::NoSpeed),
+            (false, _) => {}
+        }
         self.go(now, ramp, Phase::Running);
         self.told.push_back(Stage::Runs(ramp.speed));
         self.advance(now);
@@ -270,15 +283,21 @@ impl Motor {
     /// Slows down to a standstill.
     pub fn stop(&mut self, now: Instant) {
         self.jog_spent = true;
+        self.slow_to_rest(now);
+    }
+
+    /// Slows down to a standstill as the motion is to stop. A level that jogs goes on when it may.
+    pub fn slow_to_rest(&mut self, now: Instant) {
         self.brake(now);
         self.advance(now);
     }
 
-    /// Slows down to a standstill with a slope of its own.
+    /// Slows down to a standstill with a slope of its own, in counts per second squared. A level that jogs goes
+    /// on when it may.
     pub fn stop_with(&mut self, now: Instant, decel: f64) {
-        self.jog_spent = true;
         if self.wants.power && self.is_moving() {
             self.lose_origin(HomeEnd::Stopped);
+            self.goal = Goal::Stop(Slope::Rate(decel), 0.0);
             let trajectory = Trajectory::stop(now, self.state(now), decel);
             self.begin(now, trajectory, Phase::Stopping);
             self.told.push_back(Stage::Stops);
@@ -319,7 +338,7 @@ impl Motor {
         match () {
             () if !self.wants.power => Err(Ignored::PowerOff),
             () if self.is_held() => Err(Ignored::Held),
-            () if self.is_homing() => Err(Ignored::Homing),
+            () if self.is_homing() && !interrupt => Err(Ignored::Homing),
             () if self.is_moving() && !interrupt => Err(Ignored::Moving),
             () => Ok(()),
         }
@@ -330,41 +349,62 @@ impl Motor {
         self.wants.stop || self.wants.quick_stop
     }
 
-    fn jog(&mut self, now: Instant, ramp: Ramp) {
+    fn jog(&mut self, now: Instant, jog: Jog) {
+        let Jog { ramp, takes_over } = jog;
         let forward = ramp.speed >= 0.0;
+        if !takes_over && self.phase == (Phase::Jogging { forward }) {
+            return self.retune(now, Goal::Speed(ramp));
+        }
         let free = match self.phase {
-            Phase::Standing | Phase::Stopping | Phase::Coasting => true,
-            Phase::Jogging { forward: now } => now != forward,
+            Phase::Standing | Phase::Stopping | Phase::Coasting | Phase::Jogging { .. } => true,
             Phase::Moving | Phase::Running | Phase::Homing => false,
         };
         let may = !self.is_held() && !self.jog_spent && !self.is_at_limit(now, forward);
         if free && may {
             self.go(now, ramp, Phase::Jogging { forward });
             self.told.push_back(Stage::Jogs(ramp.speed));
+        } else if matches!(self.phase, Phase::Jogging { .. }) {
+            self.brake(now);
         }
     }
 
     fn go(&mut self, now: Instant, ramp: Ramp, phase: Phase) {
-        let Ramp { speed, accel, decel, start_speed } = ramp;
-        let from = self.feedback(now);
-        let trajectory =
-            Trajectory::to_speed_with_start(now, from, speed, accel, decel, start_speed);
-        (self.accel, self.decel, self.forward) = (accel, decel, speed >= 0.0);
+        let forward = ramp.speed >= 0.0;
+        let by_speed = matches!(self.phase, Phase::Running | Phase::Jogging { .. });
+        // A turn starts where the axis is; who goes on the same way stays as far beyond a hard stop as it was.
+        let from = match by_speed && self.forward == forward {
+            true => self.trajectory.state(now),
+            false => self.feedback(now),
+        };
+        let trajectory = match by_speed {
+            true => ramp.in_motion(from).keep(now, from),
+            false => ramp.keep(now, from),
+        };
+        self.lose_origin(HomeEnd::Replaced);
+        (self.goal, self.forward) = (Goal::Speed(ramp), forward);
         self.begin(now, trajectory, phase);
     }
 
     fn brake(&mut self, now: Instant) {
         if self.is_moving() && !matches!(self.phase, Phase::Stopping | Phase::Coasting) {
             self.lose_origin(HomeEnd::Stopped);
-            let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+            let trajectory = self.slow_down(now);
             self.begin(now, trajectory, Phase::Stopping);
             self.told.push_back(Stage::Stops);
         }
     }
 
+    /// Down to a standstill, as the motion under way is to stop.
+    fn slow_down(&mut self, now: Instant) -> Trajectory {
+        let (slope, change) = self.goal.stop(self.wants.decel);
+        self.goal = Goal::Stop(slope, change);
+        Trajectory::stop(now, self.state(now), slope.of(change))
+    }
+
     fn halt(&mut self, now: Instant) {
         if self.wants.power && self.is_moving() {
             self.lose_origin(HomeEnd::Stopped);
+            self.goal = Goal::None;
             let trajectory = Trajectory::halt(now, self.state(now));
             self.begin(now, trajectory, Phase::Stopping);
             self.told.push_back(Stage::Stops);
@@ -381,6 +421,7 @@ impl Motor {
     }
 
     fn run_out(&mut self, now: Instant) {
+        self.goal = Goal::None;
         let trajectory = Trajectory::coast(now, self.feedback(now), self.coast);
         self.begin(now, trajectory, Phase::Coasting);
     }

@@ -1,5 +1,6 @@
 //! What an axis is doing, and what it tells about it.
 
+use crate::time::Duration;
 use crate::words::{HomeEnd, Step};
 
 /// What an axis is doing.
@@ -24,6 +25,27 @@ pub enum Phase {
     Coasting,
 }
 
+/// What has become different about a motion under way: machine counts, counts per second (squared).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Replan {
+    /// Where a move ends.
+    Target(i64),
+    /// The speed; of a homing the fast one.
+    Speed(f64),
+    /// The slow speed of a homing.
+    SlowSpeed(f64),
+    /// The speed that is taken at once.
+    StartSpeed(f64),
+    /// Getting faster; what is not above 0 or not finite is at once.
+    Accel(f64),
+    /// Getting slower; likewise.
+    Decel(f64),
+    /// How far a homing goes on from the origin.
+    Way(i64),
+    /// How long a homing may take since it began.
+    TimeLimit(Option<Duration>),
+}
+
 /// A new phase, as it is told: machine counts, counts per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stage {
@@ -33,6 +55,8 @@ pub enum Stage {
     Runs(f64),
     /// It goes at this speed while a level asks for it.
     Jogs(f64),
+    /// It goes by another setting from now on.
+    Replans(Replan),
     /// It slows down.
     Stops,
     /// It runs out without power.

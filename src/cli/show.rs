@@ -73,8 +73,8 @@ fn table(model: &Model, rows: &[RowId]) -> String {
 
 fn markdown(model: &Model, rows: &[RowId]) -> String {
     let mut out = String::from(
-        "| address | row | name | 中文 | type | access | range | init | unit | applies | section | wired to | assumed |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| address | row | name | 中文 | type | access | range | init | unit | applies | counts | section | wired to | assumed |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for id in rows {
         let row = model.map.row(*id);
@@ -89,6 +89,7 @@ fn markdown(model: &Model, rows: &[RowId]) -> String {
             row.kind.value(row.init).to_string(),
             row.unit_text.clone(),
             applies(row.applies).into(),
+            counts(model, *id),
             row.see.clone(),
             wired(model, *id).unwrap_or_default(),
             row.assumed.clone(),
@@ -114,6 +115,7 @@ fn card(model: &Model, id: RowId) -> String {
     line("init", &row.kind.value(row.init).to_string());
     line("unit", &row.unit_text);
     line("applies", applies(row.applies));
+    line("counts", &counts(model, id));
     line("kept", &kept(model, row));
     line("section", &format!("{} ({})", row.see, model.manual));
     line(
@@ -153,7 +155,8 @@ fn object(model: &Model, id: RowId) -> Value {
         "range": row.spans,
         "init": row.kind.value(row.init),
         "unit": row.unit_text,
-        "applies": applies(row.applies),
+        "applies": row.applies.map(|_| applies(row.applies)),
+        "counts": model.counts(id).into_iter().map(|(it, taken)| (it, taken.name())).collect::<Vec<_>>(),
         "section": row.see,
         "values": row.values,
         "bits": row.bits,
@@ -229,7 +232,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
 /// What goes by the value of a row that sets nothing off.
 fn goes_by(model: &Model, id: RowId) -> String {
     let axis = &model.wiring.axis;
-    let settings = axis.settings.iter().filter(|(_, row)| *row == id).map(|(it, _)| it.name());
+    let settings = axis.settings.iter().filter(|it| it.row == id).map(|it| it.setting.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
     let encoder =
         (axis.encoder == Some(Counts::Row(id))).then_some("encoder increments per revolution");
@@ -259,12 +262,21 @@ fn access(access: Access) -> &'static str {
     }
 }
 
-fn applies(applies: Applies) -> &'static str {
+/// Empty where nothing is printed.
+fn applies(applies: Option<Applies>) -> &'static str {
     match applies {
-        Applies::Now => "now",
-        Applies::AtStop => "at stop",
-        Applies::PowerOn => "at power-on",
+        None => "",
+        Some(Applies::Now) => "now",
+        Some(Applies::AtStop) => "at stop",
+        Some(Applies::PowerOn) => "at power-on",
     }
+}
+
+/// When a new value counts, for each that goes by it.
+fn counts(model: &Model, id: RowId) -> String {
+    let counts = model.counts(id);
+    let times = counts.iter().map(|(name, taken)| format!("{name} {}", taken.name()));
+    times.collect::<Vec<_>>().join(", ")
 }
 
 /// How a value survives power-off: a plain write does it, a write through another window, a command, or nothing.

@@ -3,7 +3,7 @@
 use super::Drive;
 
 /// A unit of position is `numerator` by `denominator` counts.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Ratio {
     numerator: i128,
     denominator: i128,

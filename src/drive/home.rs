@@ -1,7 +1,9 @@
 //! Homing as its drive sees it: what rows say about it, and what the position register says when it is over.
 
 use super::Drive;
-use crate::behaviour::{HomeOrder, Stage};
+use super::course::Course;
+use super::settings::Moment;
+use crate::behaviour::{HomeOrder, Slope, Stage};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Choice, Finish, Homing};
 use crate::motion::Index;
@@ -35,8 +37,12 @@ impl Drive {
         if let Some(row) = unsupported {
             return Err(Ignored::Unsupported { row, value: number });
         }
-        let order = self.home_order(homing, number).ok_or(Ignored::NoMeaning)?;
+        let finish = self.finish(homing).ok_or(Ignored::NoMeaning)?;
+        let factor = self.home_time_factor(homing);
+        let order = self.home_order(homing, number, finish, factor).ok_or(Ignored::NoMeaning)?;
         self.motor.start_home(self.now, order)?;
+        self.take_settings(Moment::Start);
+        self.course = Some(Course::Home { finish, factor });
         (self.method, self.home_done) = (number, false);
         self.changes.push_back(Change::Homes { method: number });
         Ok(())
@@ -88,6 +94,14 @@ impl Drive {
                     })
             }
             Stage::Deviates => self.trip(AlarmCause::PositionDeviation),
+            Stage::Stops | Stage::Limit { .. } => {
+                self.take_settings(Moment::Stop);
+                false
+            }
+            Stage::Replans(_) => {
+                self.look_at_places();
+                false
+            }
             _ => false,
         }
     }
@@ -99,33 +113,94 @@ impl Drive {
         self.motor.is_homing().then(|| self.model.map.row(row).kind.raw(start.0))
     }
 
-    fn home_order(&self, homing: &Homing, number: i64) -> Option<HomeOrder> {
-        let method = *homing.methods.get(&number)?;
-        let fast = self.axis().speed(Setting::HomeFast).abs();
-        let finish = self.finish(homing)?;
-        let way = self.axis().way(Setting::HomeWay).filter(|_| finish.go);
-        Some(HomeOrder {
-            method,
-            fast,
-            slow: self.axis().speed(Setting::HomeSlow).abs(),
-            accel: self.axis().slope(Setting::HomeAccel, fast).unwrap_or(0.0),
+    /// Has the homing under way go by what its settings say now. Of its choices those count at once of which
+    /// the manual says so.
+    pub(super) fn follow_home_settings(&mut self) {
+        let model = self.model.clone();
+        let (Some(homing), Some(order)) = (&model.wiring.homing, self.motor.home_order()) else {
+            return;
+        };
+        let Some(Course::Home { finish, factor }) = self.course else { return };
+        let finish = self.live(&homing.finish, finish);
+        let factor = match homing.time_factor.is_some_and(|it| self.is_live(it.row)) {
+            true => self.home_time_factor(homing),
+            false => factor,
+        };
+        let order = HomeOrder {
+            limit: self.live(&homing.limit, order.limit),
+            source: self.live(&homing.source, order.source),
+            index: self.live(&homing.index, order.index),
+            ..self.home_numbers(order.clone(), finish, factor, Moment::UnderWay)
+        };
+        self.course = Some(Course::Home { finish, factor });
+        self.motor.retune_home(self.now, order);
+    }
+
+    /// How a homing changes its speed.
+    pub(super) fn home_slope(&self) -> Slope {
+        let settings = self.axis(Moment::UnderWay);
+        let [fast, slow] =
+            [Setting::HomeFast, Setting::HomeSlow].map(|it| settings.speed(it).abs());
+        let slope = settings.slope(Setting::HomeAccel).unwrap_or(Slope::Rate(0.0));
+        Slope::Rate(slope.of(if fast > 0.0 { fast } else { slow }))
+    }
+
+    fn home_order(
+        &self,
+        homing: &Homing,
+        number: i64,
+        finish: Finish,
+        factor: i64,
+    ) -> Option<HomeOrder> {
+        let order = HomeOrder {
+            method: *homing.methods.get(&number)?,
+            fast: 0.0,
+            slow: 0.0,
+            accel: Slope::Rate(0.0),
             limit: self.or(&homing.limit, Homing::LIMIT)?,
             source: self.or(&homing.source, Homing::SOURCE)?,
             index: self.or(&homing.index, Homing::INDEX)?,
-            marks: Index { every: self.counts_per_rev() as i64, offset: 0 },
+            marks: Index { every: self.counts_asked_for() as i64, offset: 0 },
             stop: homing.stop,
-            way: way.unwrap_or(0),
-            collision: self.axis().counts(Setting::HomeCollision).unwrap_or(0),
-            time_limit: self.home_time_limit(homing),
-        })
+            way: 0,
+            collision: 0,
+            time_limit: None,
+        };
+        Some(self.home_numbers(order, finish, factor, Moment::Start))
     }
 
-    fn home_time_limit(&self, homing: &Homing) -> Option<Duration> {
-        let (seconds, _) =
-            self.axis().value(Setting::HomeTimeLimit).filter(|(time, _)| *time > 0.0)?;
+    /// `order` with the numbers that settings hold.
+    fn home_numbers(
+        &self,
+        order: HomeOrder,
+        finish: Finish,
+        factor: i64,
+        moment: Moment,
+    ) -> HomeOrder {
+        let settings = self.axis(moment);
+        let time = settings.value(Setting::HomeTimeLimit).filter(|time| *time > 0.0);
+        HomeOrder {
+            fast: settings.speed(Setting::HomeFast).abs(),
+            slow: settings.speed(Setting::HomeSlow).abs(),
+            accel: settings.slope(Setting::HomeAccel).unwrap_or(Slope::Rate(0.0)),
+            way: settings.way(Setting::HomeWay).filter(|_| finish.go).unwrap_or(0),
+            collision: settings.counts(Setting::HomeCollision).unwrap_or(0),
+            time_limit: time.and_then(|it| Duration::try_from_secs_f64(it * factor as f64).ok()),
+            ..order
+        }
+    }
+
+    /// What the time limit is multiplied by.
+    fn home_time_factor(&self, homing: &Homing) -> i64 {
         let factor = homing.time_factor.map(|it| it.of(self.bank.value(&self.model, it.row)));
-        let factor = factor.filter(|it| *it > 0).unwrap_or(1);
-        Duration::try_from_secs_f64(seconds * factor as f64).ok()
+        factor.filter(|it| *it > 0).unwrap_or(1)
+    }
+
+    /// What a choice comes to that counts at once, as printed; otherwise, and where it comes to nothing, what it
+    /// has come to.
+    fn live<T: Copy>(&self, choice: &Option<Choice<T>>, before: T) -> T {
+        let live = choice.as_ref().and_then(Choice::row).is_some_and(|row| self.is_live(row));
+        self.chosen(choice).filter(|_| live).unwrap_or(before)
     }
 
     fn home_starter(&self) -> Option<HomeStarter> {
@@ -144,13 +219,15 @@ impl Drive {
 
     /// The homing is done: the position register says from now on what it is set to say.
     fn finish_home(&mut self, origin: i64) {
-        let model = self.model.clone();
-        let finish = model.wiring.homing.as_ref().and_then(|homing| self.finish(homing));
-        let finish = finish.unwrap_or(FINISH);
-        let way = self.axis().way(Setting::HomeWay).unwrap_or(0);
+        let finish = match self.course {
+            Some(Course::Home { finish, .. }) => finish,
+            _ => FINISH,
+        };
+        let settings = self.axis(Moment::UnderWay);
+        let way = settings.way(Setting::HomeWay).unwrap_or(0);
         let goes_on = finish.go && !finish.of_origin;
         let point = if goes_on { origin.saturating_add(way) } else { origin };
-        let coordinate = self.axis().way(Setting::HomeCoordinate).unwrap_or(0);
+        let coordinate = settings.way(Setting::HomeCoordinate).unwrap_or(0);
         let says = |position: i64| point.saturating_sub(position);
         self.zero = match finish.position {
             OriginPosition::Coordinate => says(coordinate),

@@ -1,6 +1,7 @@
 //! Interrupt positioning: a move that takes the place of a motion under way when a signal rises.
 
 use super::Drive;
+use super::course::MoveRows;
 use crate::behaviour::Phase;
 use crate::event::Ignored;
 use crate::time::{Duration, Instant};
@@ -52,7 +53,10 @@ impl Drive {
         if self.interrupt.stage == Stage::Active {
             return Err(Ignored::Moving);
         }
-        self.go_to(&interrupt.settings, false, true, None)?;
+        if self.motor.is_homing() {
+            return Err(Ignored::Homing);
+        }
+        self.go_to(MoveRows::Interrupt, false, true)?;
         self.interrupt.stage = Stage::Active;
         Ok(())
     }

@@ -1,7 +1,9 @@
 //! Runs that last while a level asks for them: jogs, and runs and velocity segments by terminals.
 
 use super::Drive;
-use crate::behaviour::{Phase, Ramp};
+use super::course::Course;
+use super::settings::Moment;
+use crate::behaviour::{Jog, Ramp};
 use crate::words::{Input, Lasts, Setting};
 
 /// What a level asks for.
@@ -21,7 +23,7 @@ pub(super) enum LevelKind {
     Velocity(u16),
 }
 
-/// The velocity segment that was selected when its signal rose.
+/// The velocity segment that its signal asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Velocity {
     number: u16,
@@ -52,50 +54,62 @@ impl Level {
 }
 
 impl Drive {
-    /// The run that levels ask for. Levels that contradict each other ask for none.
-    ///
-    /// A run that is under way keeps the ramp that it began with.
+    /// The run that levels ask for, at the speed that counts. Levels that contradict each other ask for none.
     pub(super) fn wanted_run(&self) -> Option<(Level, Ramp)> {
         let level = self.level()?;
-        let jogs = matches!(self.motor.phase(), Phase::Jogging { .. });
-        if let Some(present) = self.run.filter(|(it, _)| jogs && *it == level) {
-            return Some(present);
-        }
+        let moment = match self.is_under_way(level) {
+            true => Moment::UnderWay,
+            false => self.order_moment(),
+        };
+        // Without a speed there is nothing to begin, and nothing to end again and again.
+        let ramp = self.level_ramp(level, moment).filter(|ramp| ramp.speed != 0.0)?;
+        Some((level, ramp))
+    }
+
+    /// What the axis is to hear of it.
+    pub(super) fn jog(&self, run: Option<(Level, Ramp)>) -> Option<Jog> {
+        run.map(|(level, ramp)| Jog { ramp, takes_over: !self.is_under_way(level) })
+    }
+
+    /// How a run goes that `level` asks for.
+    pub(super) fn level_ramp(&self, level: Level, moment: Moment) -> Option<Ramp> {
         let axis = &self.model.wiring.axis;
-        let settings = self.settings(&axis.settings);
+        let settings = self.settings(&axis.settings, moment);
         let jog = |[speed, accel, decel]: [Setting; 3]| {
             let speed = settings.speed(speed).abs();
             let speed = if level.reverse { -speed } else { speed };
             settings.ramp(speed, None, accel, decel)
         };
-        let ramp = match level.kind {
+        Some(match level.kind {
             LevelKind::Jog => jog([Setting::JogSpeed, Setting::JogAccel, Setting::JogDecel]),
             LevelKind::Inch => jog([Setting::InchSpeed, Setting::InchAccel, Setting::InchDecel]),
             LevelKind::Run => settings.run(false),
             LevelKind::Velocity(number) => {
                 let rows = axis.segments.velocity.as_ref()?.get(number)?;
-                self.settings(rows).run(level.reverse)
+                self.settings(rows, moment).run(level.reverse)
             }
-        };
-        // Without a speed there is nothing to begin, and nothing to end again and again.
-        (ramp.speed != 0.0).then_some((level, ramp))
+        })
     }
 
-    /// Does `run` take the place of another that is under way? That one ends first, or the axis would keep
-    /// its speed where both go the same way.
-    pub(super) fn changes_over(&self, run: Option<(Level, Ramp)>) -> bool {
-        let jogs = matches!(self.motor.phase(), Phase::Jogging { .. });
-        let kinds = [self.run, run].map(|run| run.map(|(level, _)| level.kind));
-        jogs && kinds.iter().all(Option::is_some) && kinds[0] != kinds[1]
+    /// Does the axis run because of this level?
+    fn is_under_way(&self, level: Level) -> bool {
+        self.motor.is_jogging() && self.course == Some(Course::Level(level))
     }
 
-    /// Follows the level of `segment_run`: which segment it is about is settled when it rises.
+    /// Does the axis run because `input` asks for it?
+    pub(super) fn runs_by(&self, input: Input) -> bool {
+        let by = matches!(self.course, Some(Course::Level(level)) if level.input() == input);
+        by && self.motor.is_jogging()
+    }
+
+    /// Follows the level of `segment_run`, and the selection while it stands.
     pub(super) fn select_velocity(&mut self) {
         let active = self.inputs.has(Input::SegmentRun);
         match self.velocity {
-            Some(it) if it.by_edge || active => {}
-            _ => {
-                let by_level = active && self.velocity_lasts() == Some(Lasts::Level);
+            Some(it) if it.by_edge => {}
+            before => {
+                let lasts = || self.velocity_lasts() == Some(Lasts::Level);
+                let by_level = active && (before.is_some() || lasts());
                 self.velocity = by_level.then(|| self.selected_velocity(false)).flatten();
             }
         }

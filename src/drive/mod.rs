@@ -6,8 +6,10 @@
 //! other drive.
 
 mod alarms;
+mod course;
 mod foresee;
 mod gear;
+mod given;
 mod home;
 mod interrupt;
 mod levels;
@@ -24,10 +26,11 @@ mod signals;
 mod troubles;
 mod windows;
 
+pub use given::Given;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, Hold, Motor, Ramp, Servo, Wants};
+use crate::behaviour::{Chain, Hold, Motor, Servo, Wants};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -35,23 +38,16 @@ use crate::time::Instant;
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
 use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use course::Course;
 use interrupt::Interrupt;
-use levels::{Level, Velocity};
+use levels::Velocity;
 use memory::Memory;
 use no_effect::NoEffect;
+use settings::Moment;
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use troubles::Troubles;
-
-/// An order that a request gave, one of those that twice are not the same as once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Given {
-    /// The order.
-    pub action: Action,
-    /// Did the drive obey?
-    pub obeyed: bool,
-}
 
 /// One station of a drive.
 #[derive(Debug)]
@@ -78,8 +74,12 @@ pub struct Drive {
     unit: u8,
     mode: Option<Mode>,
     motor: Motor,
-    /// What levels ask for, and how that began.
-    run: Option<(Level, Ramp)>,
+    /// What the motion under way goes by.
+    course: Option<Course>,
+    /// The values of settings that count, by slot, as far as they are not live: in the base unit of each.
+    taken: Vec<f64>,
+    /// Counts for one revolution: what the row says when the axis stands.
+    counts_per_rev: f64,
     /// The velocity segment that is active.
     velocity: Option<Velocity>,
     /// Number of the position segment that started last.
@@ -130,7 +130,9 @@ impl Drive {
                 setup.machine,
                 None,
             ),
-            run: None,
+            course: None,
+            taken: vec![0.0; model.wiring.axis.slots.into()],
+            counts_per_rev: 1.0,
             velocity: None,
             segment: 0,
             chain: Chain::default(),
@@ -382,7 +384,9 @@ impl Drive {
         self.motor = self.motor.switched_on(now, axis.coast, axis.position_gain);
         (self.home_done, self.never_enabled) = (false, true);
         self.told_not_simulated = 0;
-        (self.run, self.velocity, self.segment) = (None, None, 0);
+        (self.course, self.velocity, self.segment) = (None, None, 0);
+        self.counts_per_rev = self.counts_asked_for();
+        self.take_settings(Moment::Start);
         self.interrupt = Interrupt::default();
         self.chain.end();
         self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);

@@ -2,8 +2,10 @@
 //! coordinate. What rows say about them is read in `settings.rs`.
 
 use super::Drive;
-use crate::behaviour::{Control, Stage, Wants};
-use crate::event::{Change, Ignored};
+use super::course::{Course, MoveRows};
+use super::settings::Moment;
+use crate::behaviour::{Control, Phase, Replan, Stage, Wants};
+use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
 use crate::words::{
@@ -54,14 +56,14 @@ impl Drive {
 
     /// How fast the axis goes, in revolutions a minute.
     pub(super) fn rpm(&self) -> f64 {
-        rpm(self.seen_speed(), self.counts_per_rev())
+        rpm(self.seen_speed(), self.counts_per_rev)
     }
 
     /// The speed that was ordered, in revolutions a minute, where speed is what is controlled.
     pub(super) fn rpm_ordered(&self) -> Option<f64> {
         match self.motor.control()? {
             Control::Position => None,
-            Control::Speed(speed) => Some(rpm(speed, self.counts_per_rev())),
+            Control::Speed(speed) => Some(rpm(speed, self.counts_per_rev)),
         }
     }
 
@@ -77,14 +79,17 @@ impl Drive {
         }
         self.follow_direction();
         loop {
-            let run = self.wanted_run();
-            let wants = Wants { jog: run.map(|(_, ramp)| ramp), ..self.wants() };
-            if self.changes_over(run) {
-                self.motor.follow(self.now, Wants { jog: None, ..wants });
-            }
+            self.follow_settings();
+            let (run, moment) = (self.wanted_run(), self.order_moment());
+            let jog = self.jog(run);
+            let wants = Wants { jog, decel: self.decel(), ..self.wants() };
             self.motor.follow(self.now, wants);
+            let begins = jog.is_some_and(|jog| jog.takes_over) && self.motor.is_jogging();
+            if let Some((level, _)) = run.filter(|_| begins) {
+                self.take_settings(moment);
+                self.course = Some(Course::Level(level));
+            }
             let changed = self.tell_stages(run.and_then(|(level, _)| level.segment()));
-            self.run = run;
             self.settle_segments(wants.power && !wants.stop && !wants.quick_stop);
             // An axis that tells of a fault has changed what is wanted of it.
             if !changed {
@@ -99,8 +104,9 @@ impl Drive {
 
     /// Positions of the machine between which the axis has to stay, if such are in force.
     pub(super) fn soft_limits(&self) -> Option<[i64; 2]> {
-        let low = self.axis().counts(Setting::SoftLimitNeg)?;
-        let high = self.axis().counts(Setting::SoftLimitPos)?;
+        let settings = self.axis(Moment::UnderWay);
+        let low = settings.counts(Setting::SoftLimitNeg)?;
+        let high = settings.counts(Setting::SoftLimitPos)?;
         let rule = &self.model.wiring.limits.soft;
         let in_force = match self.chosen(rule).unwrap_or(SoftLimitRule::Always) {
             SoftLimitRule::Off => false,
@@ -124,10 +130,14 @@ impl Drive {
 
     /// Stops the axis for an alarm.
     pub(super) fn brake(&mut self, stop: AlarmStop) {
-        match (stop, self.axis().slope(Setting::AlarmDecel, 0.0)) {
+        let decel = self.axis(Moment::Stop).slope(Setting::AlarmDecel);
+        match (stop, decel) {
             (AlarmStop::Coast, _) => {}
-            (AlarmStop::Ramp, Some(decel)) => self.motor.stop_with(self.now, decel),
-            (AlarmStop::Ramp, None) => self.motor.stop(self.now),
+            (AlarmStop::Ramp, Some(decel)) => {
+                self.motor.stop_with(self.now, decel.of(0.0));
+                self.course = Some(Course::Alarm);
+            }
+            (AlarmStop::Ramp, None) => self.motor.slow_to_rest(self.now),
             (AlarmStop::Quick, _) => self.motor.stop_with(self.now, f64::INFINITY),
         }
         self.tell_stages(None);
@@ -138,18 +148,12 @@ impl Drive {
     /// # Errors
     /// Why it has no effect.
     pub(super) fn order(&mut self, action: Action, modifiers: Modifiers) -> Result<(), Ignored> {
-        let (now, model) = (self.now, self.model.clone());
-        let rows = &model.wiring.axis.settings;
+        let now = self.now;
+        let [absolute, interrupt] =
+            [Modifier::Absolute, Modifier::Interrupt].map(|it| modifiers.has(it));
         let done = match action {
-            Action::MoveStart => {
-                let [absolute, interrupt] =
-                    [Modifier::Absolute, Modifier::Interrupt].map(|it| modifiers.has(it));
-                self.go_to(rows, absolute, interrupt, None)
-            }
-            Action::RunStart => {
-                let ramp = self.settings(rows).run(false);
-                self.motor.start_run(now, ramp)
-            }
+            Action::MoveStart => self.go_to(MoveRows::Axis, absolute, interrupt),
+            Action::RunStart => self.start_run(interrupt),
             Action::HomeStart => self.home(HomeStarter::Command),
             _ => {
                 let at_once = action == Action::QuickStop;
@@ -166,6 +170,21 @@ impl Drive {
         done
     }
 
+    /// Runs: also when it runs already, and with `interrupt` when it moves to a position.
+    fn start_run(&mut self, interrupt: bool) -> Result<(), Ignored> {
+        let moment = self.order_moment();
+        let ramp = self.axis(moment).run(false);
+        let over = match self.motor.phase() {
+            Phase::Running => true,
+            Phase::Moving => interrupt,
+            _ => false,
+        };
+        self.motor.start_run(self.now, ramp, over)?;
+        self.take_settings(moment);
+        self.course = Some(Course::Run);
+        Ok(())
+    }
+
     /// Is `action` one that needs an axis at rest, while it moves?
     pub(super) fn waits_for_rest(&self, action: Action) -> bool {
         matches!(action, Action::StoreAll | Action::RestoreFactory) && self.motor.is_moving()
@@ -180,6 +199,7 @@ impl Drive {
             stop: has(Input::Stop) || self.servo.is_braking(),
             quick_stop: has(Input::QuickStop),
             jog: None,
+            decel: None,
             switches: self.inputs,
             soft_limits: self.soft_limits(),
             limit_stop: self.chosen(&self.model.wiring.limits.stop).unwrap_or_default(),
@@ -201,6 +221,7 @@ impl Drive {
                 None => Change::Jogs { mrpm: self.mrpm(speed) },
                 Some(number) => Change::VelocitySegment { number, mrpm: self.mrpm(speed) },
             },
+            Stage::Replans(what) => Change::Replans(self.replanned(what)),
             Stage::Stops => Change::Stops,
             Stage::Coasts => Change::Coasts,
             Stage::Stands(position) => Change::Stands { at: at(position) },
@@ -220,9 +241,24 @@ impl Drive {
         })
     }
 
+    fn replanned(&self, what: Replan) -> Replanned {
+        // What is no number above 0 is at once.
+        let slope = |it: f64| (it > 0.0 && it.is_finite()).then(|| self.mrpm(it));
+        match what {
+            Replan::Target(to) => Replanned::Target { to: to.saturating_sub(self.zero) },
+            Replan::Speed(speed) => Replanned::Speed { mrpm: self.mrpm(speed) },
+            Replan::SlowSpeed(speed) => Replanned::SlowSpeed { mrpm: self.mrpm(speed) },
+            Replan::StartSpeed(speed) => Replanned::StartSpeed { mrpm: self.mrpm(speed) },
+            Replan::Accel(accel) => Replanned::Acceleration { mrpm_per_s: slope(accel) },
+            Replan::Decel(decel) => Replanned::Deceleration { mrpm_per_s: slope(decel) },
+            Replan::Way(by) => Replanned::Way { by },
+            Replan::TimeLimit(time) => Replanned::TimeLimit { time },
+        }
+    }
+
     /// Thousandths of a revolution a minute.
     fn mrpm(&self, speed: f64) -> i64 {
-        (rpm(speed, self.counts_per_rev()) * 1000.0).round() as i64
+        (rpm(speed, self.counts_per_rev) * 1000.0).round() as i64
     }
 }
 

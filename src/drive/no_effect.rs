@@ -181,7 +181,7 @@ impl Drive {
 
     /// Why the run that `input` asks for is not under way, if it is not.
     fn why_no_run(&self, input: Input) -> Option<Ignored> {
-        if self.motor.is_jogging() && self.run.is_some_and(|(level, _)| level.input() == input) {
+        if self.runs_by(input) {
             return None;
         }
         match self.motor.may_start(false) {

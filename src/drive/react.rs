@@ -5,7 +5,7 @@ use crate::bank::WritePlan;
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
-use crate::words::{Action, Modifiers, RowId};
+use crate::words::{Action, Modifier, Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
@@ -18,13 +18,20 @@ impl Drive {
                 Reaction::Inputs => inputs = true,
                 Reaction::InputWord(word) => {
                     inputs = true;
-                    let time = self.hold_time().filter(|_| raw != 0);
-                    self.holds[usize::from(word)].refresh(self.now, time);
+                    let (time, hold) = (self.hold_time(), &mut self.holds[usize::from(word)]);
+                    match raw {
+                        0 => hold.stop(),
+                        _ => hold.refresh(self.now, time),
+                    }
                 }
                 Reaction::Line => line = true,
                 Reaction::Timeout => self.hear(),
             }
         }
+        // What was written may be the time that words hold.
+        let time = self.hold_time();
+        self.holds.iter_mut().for_each(|hold| hold.retime(time));
+        self.expire_words();
         if inputs {
             self.gather_inputs();
         }
@@ -105,6 +112,7 @@ impl Drive {
             self.give(action, modifiers);
             orders.for_each(|(_, it)| self.ignore(Ordered::Action(*it), Ignored::After(action)));
         }
+        let interrupts = |bit: u8| triggers.modifiers.contains(&(bit, Modifier::Interrupt));
         for bit in (0..32u8).filter(|bit| is_set(*bit)) {
             let is_modifier = triggers.modifiers.iter().any(|(it, _)| *it == bit);
             let is_order = triggers.actions.iter().any(|(it, _)| *it == bit);
@@ -113,6 +121,8 @@ impl Drive {
                 _ if !is_modifier => Ignored::Nothing,
                 None => Ignored::NoOrder,
                 Some(Action::MoveStart) => continue,
+                // It can take the place of a move.
+                Some(Action::RunStart) if interrupts(bit) => continue,
                 Some(_) => Ignored::MovesOnly,
             };
             self.ignore(Ordered::Bit { row, bit, on: true }, why);
@@ -133,7 +143,7 @@ impl Drive {
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on.
     pub(super) fn follow_line_settings(&mut self) {
         let line = &self.model.line;
-        let waits = |row| self.model.map.row(row).applies == Applies::PowerOn;
+        let waits = |row| self.model.map.row(row).applies == Some(Applies::PowerOn);
         let mode_waits = waits(line.baud.row) || waits(line.format.row);
         let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for() };
         let mode = if mode_waits { self.mode } else { self.mode_asked_for() };

@@ -1,11 +1,12 @@
 //! Moves and runs that rising edges start, by number and in chains.
 
 use super::Drive;
+use super::course::{Course, MoveRows, Way};
 use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{ChainRules, Link};
 use crate::time::Duration;
-use crate::words::{Condition, Input, Inputs, Lasts, RowId, Setting, Target};
+use crate::words::{Condition, Input, Inputs, Lasts, Setting, Target};
 
 impl Drive {
     /// Starts what the edges in `risen` ask for, in the order of the catalogue.
@@ -58,7 +59,7 @@ impl Drive {
         if !(free && (arrived || phase == Phase::Moving)) {
             self.chain.end();
         } else if let Some(at) = self.in_position_at() {
-            self.chain.arrive(at);
+            self.chain.arrive(self.now, at);
         }
         if !matches!(phase, Phase::Jogging { .. }) {
             self.velocity = self.velocity.filter(|it| !it.by_edge);
@@ -84,10 +85,9 @@ impl Drive {
     }
 
     fn start_move(&mut self) -> Result<(), Ignored> {
-        let model = self.model.clone();
         let interrupt = self.motor.phase() == Phase::Running;
-        let absolute = self.settings(&model.wiring.axis.settings).is_set(Setting::MoveAbsolute);
-        self.go_to(&model.wiring.axis.settings, absolute && !interrupt, interrupt, None)
+        let absolute = self.axis(self.order_moment()).is_set(Setting::MoveAbsolute);
+        self.go_to(MoveRows::Axis, absolute && !interrupt, interrupt)
     }
 
     fn start_position_segment(&mut self) -> Result<(), Ignored> {
@@ -105,7 +105,7 @@ impl Drive {
         let running = self.velocity.is_some_and(|it| it.by_edge);
         let absolute = self.target_of(number)? == Target::Absolute && !running;
         self.motor.may_start(chained || running)?;
-        self.go_to(&segment.settings, absolute, chained || running, Some(number))?;
+        self.go_to(MoveRows::Segment(number), absolute, chained || running)?;
         self.segment = number;
         if let (Some(rules), Some(link)) = (&segments.chain, &segment.link) {
             self.chain.begin(self.now, self.chain_rule(rules, link));
@@ -134,8 +134,14 @@ impl Drive {
         if self.velocity_lasts() == Some(Lasts::Edge) {
             self.motor.may_start(false)?;
             self.velocity = self.selected_velocity(true);
-            let way = self.wanted_run().map_or(0.0, |(_, ramp)| ramp.speed);
-            self.motor.may_go(self.now, way)?;
+            let run = self.wanted_run();
+            let may = match run {
+                Some((_, ramp)) => self.motor.may_go(self.now, ramp.speed),
+                None if self.velocity.is_some() => Err(Ignored::NoSpeed),
+                None => Err(Ignored::NoSegment),
+            };
+            self.velocity = self.velocity.filter(|_| may.is_ok());
+            may?;
         }
         match self.velocity {
             None => Err(Ignored::NoSegment),
@@ -143,28 +149,39 @@ impl Drive {
         }
     }
 
-    /// Goes where `rows` say; whatever chain there was is over.
+    /// Goes where the settings of a move say; whatever chain there was is over.
     pub(super) fn go_to(
         &mut self,
-        rows: &[(Setting, RowId)],
+        rows: MoveRows,
         absolute: bool,
         interrupt: bool,
-        segment: Option<u16>,
     ) -> Result<(), Ignored> {
-        let (by, how) = self.settings(rows).next_move();
-        let by = if self.inputs.has(Input::ReversePosition) { by.saturating_neg() } else { by };
+        let moment = self.order_moment();
+        let (by, ramp) = self.settings(self.move_rows(rows), moment).next_move();
+        let reverse = self.inputs.has(Input::ReversePosition);
         let (now, zero, gear) = (self.now, self.zero, self.gear());
         // A target is a place as the position register counts, which may have begun anew.
         let begun = self.position() - self.wrapped(self.position());
+        let mut way = Way { from: begun, zero, gear, reverse };
         let target = |here: i64| {
-            let from = if absolute { begun } else { gear.units(here.saturating_sub(zero)) };
-            gear.counts(from.saturating_add(by)).saturating_add(zero)
+            if !absolute {
+                way.from = gear.units(here.saturating_sub(zero));
+            }
+            way.target(by)
         };
-        self.motor.start_move(now, target, how, interrupt)?;
-        self.tell_stages(segment);
+        self.motor.start_move(now, target, ramp, interrupt)?;
+        self.take_settings(moment);
+        self.course = Some(Course::Move { rows, way });
+        self.tell_stages(rows.segment());
         self.replace_interrupt();
         self.chain.end();
         Ok(())
+    }
+
+    /// Finds out anew when the axis comes to the places that its chain waits for.
+    pub(super) fn look_at_places(&mut self) {
+        let (now, motor) = (self.now, &self.motor);
+        self.chain.look(now, |place| motor.reaches(now, place));
     }
 
     /// What the rows of a segment say about when it gives way.
@@ -183,7 +200,7 @@ impl Drive {
                 Condition::Step => Wait::Step,
                 Condition::Position => {
                     let place = self.place(value.round() as i64);
-                    Wait::Position(self.motor.reaches(self.now, place))
+                    Wait::Position { place, at: self.motor.reaches(self.now, place) }
                 }
             });
         }

@@ -1,33 +1,75 @@
-//! What rows say about motions, in counts.
+//! What rows say about motions, in counts, and from when on it counts.
 
 use super::Drive;
-use crate::behaviour::Ramp;
-use crate::model::{Choice, Counts};
-use crate::motion::Move;
+use crate::behaviour::{Ramp, Slope};
+use crate::model::{Applies, Choice, Counts, SettingRow};
 use crate::units::{Dimension, Unit};
-use crate::words::{RowId, Setting};
+use crate::words::{RowId, Setting, Taken};
+
+/// When settings are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Moment {
+    /// A motion is ordered at a standstill.
+    Start,
+    /// A motion is ordered while another is under way.
+    Order,
+    /// A stop is ordered.
+    Stop,
+    /// A motion is under way, or none, and nothing is ordered.
+    UnderWay,
+}
+
+impl Moment {
+    /// Does the value count that the row holds then? Otherwise one that it held before.
+    fn takes(self, it: &SettingRow) -> bool {
+        match (it.taken, self) {
+            (Taken::Live, _) | (_, Self::Start) | (Taken::AtOrder, Self::Order) => true,
+            (Taken::AtOrder, Self::Stop) => it.setting.slows_down(),
+            (Taken::AtOrder | Taken::AtStart, _) => false,
+        }
+    }
+}
 
 /// The rows that a motion goes by, and the drive that holds their values.
 #[derive(Clone, Copy)]
 pub(super) struct Settings<'a> {
     drive: &'a Drive,
-    rows: &'a [(Setting, RowId)],
+    rows: &'a [SettingRow],
+    moment: Moment,
 }
 
 impl Drive {
-    /// What `rows` say.
-    pub(super) fn settings<'a>(&'a self, rows: &'a [(Setting, RowId)]) -> Settings<'a> {
-        Settings { drive: self, rows }
+    /// What `rows` say to somebody who looks at `moment`.
+    pub(super) fn settings<'a>(&'a self, rows: &'a [SettingRow], moment: Moment) -> Settings<'a> {
+        Settings { drive: self, rows, moment }
     }
 
-    /// What the rows of the axis say.
-    pub(super) fn axis(&self) -> Settings<'_> {
-        self.settings(&self.model.wiring.axis.settings)
+    /// What the rows of the axis say to somebody who looks at `moment`.
+    pub(super) fn axis(&self, moment: Moment) -> Settings<'_> {
+        self.settings(&self.model.wiring.axis.settings, moment)
+    }
+
+    /// The moment of an order that is given now.
+    pub(super) fn order_moment(&self) -> Moment {
+        if self.motor.is_moving() { Moment::Order } else { Moment::Start }
+    }
+
+    /// From now on those values count that rows hold at `moment`.
+    pub(super) fn take_settings(&mut self, moment: Moment) {
+        let model = self.model.clone();
+        for it in model.wiring.axis.all_settings().filter(|it| moment.takes(it)) {
+            self.taken[usize::from(it.slot)] = self.in_row(it.row);
+        }
     }
 
     /// What a choice comes to, if there is one.
     pub(super) fn chosen<T: Copy>(&self, choice: &Option<Choice<T>>) -> Option<T> {
         choice.as_ref()?.get(|row| self.bank.value(&self.model, row))
+    }
+
+    /// Does a value of `row` count at once, as printed?
+    pub(super) fn is_live(&self, row: RowId) -> bool {
+        self.model.map.row(row).applies == Some(Applies::Now)
     }
 
     /// The unit of a row. That of a speed may be finer than the model says, where a row decides.
@@ -39,15 +81,15 @@ impl Drive {
         Unit { scale: unit.scale * rpm.unwrap_or(1.0), ..unit }
     }
 
-    /// Counts for one revolution.
-    pub(super) fn counts_per_rev(&self) -> f64 {
+    /// Counts for one revolution, as its row says.
+    pub(super) fn counts_asked_for(&self) -> f64 {
         self.per_rev(self.model.wiring.axis.counts_per_rev)
     }
 
     /// Increments of the encoder in counts. They are counts where a row has none of them in a revolution.
     pub(super) fn counts(&self, increments: f64) -> f64 {
         let per_rev = self.model.wiring.axis.encoder.map_or(0.0, |it| self.per_rev(it));
-        if per_rev > 0.0 { increments * self.counts_per_rev() / per_rev } else { increments }
+        if per_rev > 0.0 { increments * self.counts_per_rev / per_rev } else { increments }
     }
 
     fn per_rev(&self, counts: Counts) -> f64 {
@@ -56,17 +98,20 @@ impl Drive {
             Counts::Row(row) => self.bank.value(&self.model, row) as f64,
         }
     }
+
+    /// The value of a row in the base unit of its dimension.
+    fn in_row(&self, row: RowId) -> f64 {
+        self.bank.value(&self.model, row) as f64 * self.unit_of(row).scale
+    }
 }
 
 impl Settings<'_> {
     /// How far, or where to, and how.
-    pub(super) fn next_move(self) -> (i64, Move) {
-        let target = self.value(Setting::MoveTarget).map_or(0.0, |(value, _)| value.round());
+    pub(super) fn next_move(self) -> (i64, Ramp) {
+        let target = self.counts(Setting::MoveTarget).unwrap_or(0);
         let speed = self.speed(Setting::MoveSpeed).abs();
         let start = Some(Setting::MoveStartSpeed);
-        let Ramp { accel, decel, start_speed, .. } =
-            self.ramp(speed, start, Setting::MoveAccel, Setting::MoveDecel);
-        (target as i64, Move { start_speed, speed, accel, decel })
+        (target, self.ramp(speed, start, Setting::MoveAccel, Setting::MoveDecel))
     }
 
     /// How a run goes: at its speed, or the opposite.
@@ -78,7 +123,7 @@ impl Settings<'_> {
 
     /// Is the setting wired, and not 0?
     pub(super) fn is_set(self, setting: Setting) -> bool {
-        self.value(setting).is_some_and(|(value, _)| value != 0.0)
+        self.value(setting).is_some_and(|value| value != 0.0)
     }
 
     /// Slopes that reach `speed` from the start speed; what slows down is what speeds up where no row says
@@ -91,17 +136,17 @@ impl Settings<'_> {
         decel: Setting,
     ) -> Ramp {
         let start_speed = start.map_or(0.0, |start| self.speed(start).abs());
-        let change = (speed.abs() - start_speed).max(0.0);
-        let accel = self.slope(accel, change);
-        let decel = self.slope(decel, change).or(accel);
-        let (accel, decel) = (accel.unwrap_or(0.0), decel.unwrap_or(0.0));
+        let accel = self.slope(accel);
+        let decel = self.slope(decel).or(accel);
+        let [accel, decel] = [accel, decel].map(|it| it.unwrap_or(Slope::Rate(0.0)));
         Ramp { speed, accel, decel, start_speed }
     }
 
     /// What a row holds in counts, in units of position or in increments of the encoder.
     pub(super) fn counts(self, setting: Setting) -> Option<i64> {
-        let (value, dimension) = self.value(setting)?;
-        let counts = match dimension {
+        let value = self.value(setting)?;
+        let row = self.row(setting)?.row;
+        let counts = match self.drive.model.map.row(row).unit.dimension {
             Dimension::Increments => self.drive.counts(value),
             _ => value,
         };
@@ -115,28 +160,34 @@ impl Settings<'_> {
 
     /// Counts per second.
     pub(super) fn speed(self, setting: Setting) -> f64 {
-        let rpm = self.value(setting).map_or(0.0, |(value, _)| value);
-        counts_per_s(rpm, self.drive.counts_per_rev())
+        self.per_second(self.value(setting).unwrap_or(0.0))
     }
 
-    /// Counts per second squared.
-    pub(super) fn slope(self, setting: Setting, change: f64) -> Option<f64> {
-        let (value, dimension) = self.value(setting)?;
-        Some(match dimension {
-            Dimension::Time => change / value,
-            _ => counts_per_s(value, self.drive.counts_per_rev()),
+    /// How a speed changes, if a row says so.
+    pub(super) fn slope(self, setting: Setting) -> Option<Slope> {
+        let value = self.value(setting)?;
+        let row = self.row(setting)?;
+        Some(match self.drive.model.map.row(row.row).unit.dimension {
+            Dimension::Time => Slope::Time(value),
+            _ => Slope::Rate(self.per_second(value)),
         })
     }
 
     /// The value of a setting in the base unit of its dimension.
-    pub(super) fn value(self, setting: Setting) -> Option<(f64, Dimension)> {
-        let (_, row) = *self.rows.iter().find(|(it, _)| *it == setting)?;
-        let Drive { model, bank, .. } = self.drive;
-        let unit = self.drive.unit_of(row);
-        Some((bank.value(model, row) as f64 * unit.scale, unit.dimension))
+    pub(super) fn value(self, setting: Setting) -> Option<f64> {
+        let it = self.row(setting)?;
+        Some(match self.moment.takes(it) {
+            true => self.drive.in_row(it.row),
+            false => self.drive.taken[usize::from(it.slot)],
+        })
     }
-}
 
-fn counts_per_s(rpm: f64, counts_per_rev: f64) -> f64 {
-    rpm * counts_per_rev / 60.0
+    fn row(&self, setting: Setting) -> Option<&SettingRow> {
+        self.rows.iter().find(|it| it.setting == setting)
+    }
+
+    /// Revolutions a minute in counts per second.
+    fn per_second(&self, rpm: f64) -> f64 {
+        rpm * self.drive.counts_per_rev / 60.0
+    }
 }

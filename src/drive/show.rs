@@ -69,7 +69,7 @@ impl Drive {
             Quantity::CommandRate => self.motor.command_rate(self.now),
             Quantity::ElectricalAngle => {
                 let poles = f64::from(self.model.wiring.axis.pole_pairs);
-                let turn = self.encoder_angle() as f64 / self.counts_per_rev();
+                let turn = self.encoder_angle() as f64 / self.counts_per_rev;
                 (turn * poles).fract() * 360.0
             }
             _ => self.quantity(quantity) as f64,
@@ -83,7 +83,7 @@ impl Drive {
 
     /// Counts from the zero mark of the encoder, below a revolution.
     pub(super) fn encoder_angle(&self) -> i64 {
-        self.seen_position().rem_euclid(self.counts_per_rev() as i64)
+        self.seen_position().rem_euclid(self.counts_per_rev as i64)
     }
 
     fn encoder_turns(&self) -> i64 {
@@ -92,7 +92,7 @@ impl Drive {
 
     /// Whole revolutions of the encoder, whatever was cleared.
     pub(super) fn full_turns(&self) -> i64 {
-        self.seen_position().div_euclid(self.counts_per_rev() as i64)
+        self.seen_position().div_euclid(self.counts_per_rev as i64)
     }
 
     fn show_quantity(&self, row: RowId, quantity: Quantity) -> u32 {

@@ -4,7 +4,7 @@ use super::rows::{self, Item};
 use super::{no_effect, text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
+use crate::event::{Change, Event, Mishap, Outcome, Replanned, Transaction, Trouble, What};
 use crate::model::Row;
 use crate::wire::hex::to_hex;
 use crate::words::{Refusal, Word};
@@ -202,6 +202,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             let why = why::chain_step(*why);
             ("chain_step", json!({"from": from, "to": to, "why": why}))
         }
+        Change::Replans(what) => ("replanned", replanned(what)),
         Change::Stops => ("stops", json!({})),
         Change::Coasts => ("coasts", json!({})),
         Change::Stands { at } => ("stands", json!({"at": at})),
@@ -255,6 +256,22 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
     };
     merge(&mut fields, more);
     (kind, fields)
+}
+
+fn replanned(what: &Replanned) -> Value {
+    let slope = |it: &Option<i64>| it.map(text::rpm);
+    match what {
+        Replanned::Target { to } => json!({"target": to}),
+        Replanned::Speed { mrpm } => json!({"rpm": text::rpm(*mrpm)}),
+        Replanned::SlowSpeed { mrpm } => json!({"slow_rpm": text::rpm(*mrpm)}),
+        Replanned::StartSpeed { mrpm } => json!({"start_rpm": text::rpm(*mrpm)}),
+        Replanned::Acceleration { mrpm_per_s } => json!({"acceleration_rpm_s": slope(mrpm_per_s)}),
+        Replanned::Deceleration { mrpm_per_s } => json!({"deceleration_rpm_s": slope(mrpm_per_s)}),
+        Replanned::Way { by } => json!({"offset": by}),
+        Replanned::TimeLimit { time } => {
+            json!({"time_limit_s": time.map(|time| time.as_secs_f64())})
+        }
+    }
 }
 
 pub(super) fn merge(into: &mut Value, more: Value) {

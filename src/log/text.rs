@@ -3,7 +3,7 @@
 use super::{no_effect, rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Outcome, Transaction, Trouble, What};
+use crate::event::{Change, Event, Mishap, Outcome, Replanned, Transaction, Trouble, What};
 use crate::serial::Mode;
 use crate::text::one_line;
 use crate::wire::hex::to_hex;
@@ -221,6 +221,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::ChainStep { from, to, why } => {
             format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
         }
+        Change::Replans(what) => replanned(what),
         Change::Stops => "stops".into(),
         Change::Coasts => "runs out, the servo is off".into(),
         Change::Stands { at } => format!("stands at {at}"),
@@ -287,6 +288,27 @@ fn trouble_text(drive: &Drive, trouble: Trouble, on: bool) -> String {
         (Trouble::Stuck(index), false) => {
             format!("terminal {} sticks no longer", rows::terminal(drive, index))
         }
+    }
+}
+
+/// What has become different about a motion under way.
+fn replanned(what: &Replanned) -> String {
+    let slope = |it: &Option<i64>| match it {
+        Some(mrpm_per_s) => format!("{} rpm/s", rpm(*mrpm_per_s)),
+        None => "at once".into(),
+    };
+    match what {
+        Replanned::Target { to } => format!("target now {to}"),
+        Replanned::Speed { mrpm } => format!("speed now {} rpm", rpm(*mrpm)),
+        Replanned::SlowSpeed { mrpm } => format!("slow speed now {} rpm", rpm(*mrpm)),
+        Replanned::StartSpeed { mrpm } => format!("start speed now {} rpm", rpm(*mrpm)),
+        Replanned::Acceleration { mrpm_per_s } => format!("acceleration now {}", slope(mrpm_per_s)),
+        Replanned::Deceleration { mrpm_per_s } => format!("deceleration now {}", slope(mrpm_per_s)),
+        Replanned::Way { by } => format!("offset from the origin now {by}"),
+        Replanned::TimeLimit { time: Some(time) } => {
+            format!("homing time limit now {} s", time.as_secs_f64())
+        }
+        Replanned::TimeLimit { time: None } => "no homing time limit now".into(),
     }
 }
 

@@ -106,7 +106,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
             init: 0,
             unit: None,
             access: area.access,
-            applies: Default::default(),
+            applies: None,
             lock: None,
             volatile: false,
             autosave: false,

@@ -25,7 +25,7 @@ pub use times::duration;
 pub use wiring::{
     Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Gear, Hold,
     Homing, InputWords, Interrupt, Limits, Link, Monitor, Number, OutputWords, PositionSegment,
-    PositionSegments, Reaction, Segments, Servo, Shown, Shows, Terminals, Triggers,
+    PositionSegments, Reaction, Segments, Servo, SettingRow, Shown, Shows, Terminals, Triggers,
     VelocitySegments, Wiring,
 };
 

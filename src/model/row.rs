@@ -27,7 +27,7 @@ pub struct Row {
     /// What a master may do.
     pub access: Access,
     /// When a new value takes effect.
-    pub applies: Applies,
+    pub applies: Option<Applies>,
     /// Refuses writes while the power stage is on.
     pub locked_while_enabled: bool,
     /// Never kept over power-off.

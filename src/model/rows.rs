@@ -153,11 +153,11 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
             RawAccess::W => Access::Write,
             RawAccess::Rw => Access::Both,
         },
-        applies: match raw.applies {
+        applies: raw.applies.map(|it| match it {
             RawApplies::Now => Applies::Now,
             RawApplies::AtStop => Applies::AtStop,
             RawApplies::PowerOn => Applies::PowerOn,
-        },
+        }),
         locked_while_enabled: raw.lock == Some(RawLock::Enabled),
         // What is 0 again once it has acted has nothing to keep.
         volatile: raw.volatile || raw.clears,

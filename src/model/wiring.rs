@@ -6,6 +6,7 @@ mod chain;
 mod choice;
 mod claims;
 mod compile;
+mod counts;
 mod homing;
 mod interrupt;
 mod limits;
@@ -35,7 +36,9 @@ use super::RowId;
 use super::line::Coded;
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::words::{Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Threshold};
+use crate::words::{
+    Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Taken, Threshold,
+};
 
 /// What a model is wired to. Lists are in the order of the file, and short.
 #[derive(Debug, Default)]
@@ -272,7 +275,9 @@ pub struct Axis {
     /// What `rpm` in the units of rows stands for, in revolutions a minute, where a row says.
     pub speed_unit: Option<Coded<f64>>,
     /// The rows that motions go by.
-    pub settings: Vec<(Setting, RowId)>,
+    pub settings: Vec<SettingRow>,
+    /// How many values of settings a drive keeps: one for each row of each setting, also of segments.
+    pub slots: u16,
     /// Motions by number.
     pub segments: Segments,
     /// Interrupt positioning.
@@ -286,6 +291,19 @@ pub struct Gear {
     pub numerator: RowId,
     /// The row with the denominator, which can't hold 0.
     pub denominator: RowId,
+}
+
+/// The row of a setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SettingRow {
+    /// What for.
+    pub setting: Setting,
+    /// The row.
+    pub row: RowId,
+    /// When a value counts that is written to it.
+    pub taken: Taken,
+    /// Where a drive keeps the value that counts, from 0 on.
+    pub slot: u16,
 }
 
 /// Counts or increments for one revolution.
@@ -311,6 +329,7 @@ impl Default for Axis {
             gear: None,
             speed_unit: None,
             settings: Vec::new(),
+            slots: 0,
             segments: Segments::default(),
             interrupt: None,
         }
@@ -318,9 +337,15 @@ impl Default for Axis {
 }
 
 impl Axis {
+    /// The settings of all motions, those of segments too.
+    pub fn all_settings(&self) -> impl Iterator<Item = &SettingRow> {
+        let interrupt = self.interrupt.iter().flat_map(|it| &it.settings);
+        self.settings.iter().chain(self.segments.settings()).chain(interrupt)
+    }
+
     /// The row that holds `setting`.
     pub fn setting(&self, setting: Setting) -> Option<RowId> {
-        self.settings.iter().find(|(it, _)| *it == setting).map(|(_, row)| *row)
+        self.settings.iter().find(|it| it.setting == setting).map(|it| it.row)
     }
 }
 

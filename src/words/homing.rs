@@ -209,5 +209,6 @@ words! {
         Alarm "alarm" "an alarm was raised",
         Stopped "stopped" "the axis was stopped",
         PowerOff "power_off" "the power stage went off",
+        Replaced "replaced" "another motion took its place",
     }
 }

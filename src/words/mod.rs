@@ -12,6 +12,7 @@ mod refusal;
 mod segment;
 mod setting;
 mod signal;
+mod taken;
 mod threshold;
 
 pub use action::{Action, Modifier, Modifiers};
@@ -26,6 +27,7 @@ pub use refusal::{Detail, Refusal, RowId};
 pub use segment::{Condition, InterruptRule, Lasts, Target};
 pub use setting::Setting;
 pub use signal::{Input, Inputs, Output, Outputs};
+pub use taken::Taken;
 pub use threshold::Threshold;
 
 /// A word with a name in files and a line of explanation: what the catalogue prints.

@@ -1,10 +1,10 @@
-//! Numbers that a motion goes by: a model says which row holds them.
+//! Numbers that a motion goes by: a model says which row holds them, and when a new value counts.
 
 use super::words;
 use crate::units::Dimension;
 
 words! {
-    /// A number that is read when a motion starts and holds until the next one.
+    /// A number that a motion goes by.
     Setting {
         RunSpeed "run.speed" "speed of `run_start` and `run`; its sign is the direction",
         RunStartSpeed "run.start_speed" "speed that a run takes at once; a sign does not count",
@@ -31,11 +31,24 @@ words! {
         HomeTimeLimit "home.time_limit" "most time that a homing may take; 0 is no limit",
         SoftLimitPos "limit.soft_pos" "greatest position, where soft limits are in force",
         SoftLimitNeg "limit.soft_neg" "least position, where soft limits are in force",
-        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops, if not as its motion would; read when the alarm is raised",
+        AlarmDecel "alarm.decel" "how an axis slows down that an alarm with `stop: ramp` stops, if not as its motion would",
     }
 }
 
 impl Setting {
+    /// Does it say how an axis slows down? An order to stop takes it then.
+    pub fn slows_down(self) -> bool {
+        matches!(
+            self,
+            Self::RunDecel | Self::JogDecel | Self::InchDecel | Self::MoveDecel | Self::AlarmDecel
+        )
+    }
+
+    /// Is it a bound that is watched, and no part of an order?
+    pub fn is_bound(self) -> bool {
+        matches!(self, Self::SoftLimitPos | Self::SoftLimitNeg)
+    }
+
     /// What it may measure; the row's unit must fit one of them.
     ///
     /// A ramp is an acceleration, or the time from standstill (a move or run: from its start speed) to the speed.

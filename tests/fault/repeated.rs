@@ -169,6 +169,8 @@ fn each_action_adds_up_or_does_not() {
         if matches!(action, Action::MoveStart | Action::RunStart | Action::HomeStart) {
             let enable = order(&rig, Action::Enable);
             ask(&mut rig, &enable);
+            // A run needs a speed.
+            ask(&mut rig, &[6, 0x20, 0x02, 0, 60]);
         } else if let Action::AlarmReset | Action::EncoderReset = action {
             let encoder = action == Action::EncoderReset;
             let cause = if encoder { AlarmCause::Encoder } else { AlarmCause::Overload };

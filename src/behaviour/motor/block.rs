@@ -3,8 +3,8 @@
 //! Blocked it stands between two hard stops at one count, so everything that hard stops lead to follows: it is behind
 //! its command, and a homing takes it for the end of the way.
 
+use super::goal::Goal;
 use super::{Motor, Phase};
-use crate::motion::Trajectory;
 use crate::time::{Duration, Instant};
 
 impl Motor {
@@ -38,10 +38,10 @@ impl Motor {
         self.machine.hard_stop = own;
         let behind = told - here.position;
         self.trajectory = match self.phase {
-            Phase::Running | Phase::Jogging { .. } => {
-                let speed = self.trajectory.last_speed();
-                Trajectory::to_speed(now, here, speed, self.accel, self.decel)
-            }
+            Phase::Running | Phase::Jogging { .. } => match self.goal {
+                Goal::Speed(ramp) => ramp.keep(now, here),
+                _ => self.trajectory.left(now, -behind),
+            },
             _ if self.wants.power && self.lag.makes_up() => {
                 self.lag = self.lag.with_deviation(behind);
                 self.trajectory.left(now, 0.0)

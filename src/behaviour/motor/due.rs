@@ -66,7 +66,8 @@ impl Motor {
                 false => self.trajectory.crossing(low as f64, Way::Falling, now),
             }),
             index: wait.index.and_then(|index| self.next_index(now, index)),
-            end: self.trajectory.end().filter(|_| self.is_moving()),
+            // A run at a speed that has become 0 waits for another.
+            end: self.trajectory.end().filter(|_| self.is_moving() && self.phase != Phase::Running),
             time: wait.until,
         };
     }

@@ -4,6 +4,9 @@
 //! switches as the drive does, so it doesn't matter whether a terminal, a master or the machine moves them. What the
 //! position register says of the origin is not decided here.
 
+mod replan;
+
+use super::goal::{Goal, Slope};
 use super::limits::limit;
 use super::{Motor, Phase, Stage};
 use crate::event::Ignored;
@@ -23,8 +26,8 @@ pub struct HomeOrder {
     pub fast: f64,
     /// Counts per second.
     pub slow: f64,
-    /// Slope of all changes of speed, counts per second squared.
-    pub accel: f64,
+    /// Slope of all changes of speed; a time is that up to `fast`.
+    pub accel: Slope,
     /// What a limit on the way means.
     pub limit: LimitRule,
     /// What tells that there is one.
@@ -43,6 +46,28 @@ pub struct HomeOrder {
     pub time_limit: Option<Duration>,
 }
 
+impl HomeOrder {
+    /// Slope of all changes of speed, counts per second squared.
+    fn slope(&self) -> f64 {
+        self.accel.of(if self.fast > 0.0 { self.fast } else { self.slow })
+    }
+
+    /// From the origin to where it ends.
+    fn onward(&self, now: Instant, from: State, origin: i64) -> Trajectory {
+        let (speed, accel) = (self.fast, self.slope());
+        let how = Move { start_speed: 0.0, speed, accel, decel: accel };
+        Trajectory::to_position(now, from, origin.saturating_add(self.way), how)
+    }
+
+    /// Is there a part of the way that it would never go, because its speed is 0?
+    fn stands_still(&self) -> bool {
+        let paces = |pace| self.method.all_steps().any(|step| step.pace == pace);
+        let refines = self.method.index && self.index != IndexRule::None;
+        (self.fast == 0.0 && (paces(Pace::Fast) || self.way != 0))
+            || (self.slow == 0.0 && (paces(Pace::Slow) || refines))
+    }
+}
+
 /// A homing under way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Homing {
@@ -58,6 +83,7 @@ pub(super) struct Homing {
     /// The last index mark that ended a step.
     mark: Option<i64>,
     origin: i64,
+    began: Instant,
     until: Option<Instant>,
 }
 
@@ -107,6 +133,14 @@ impl Homing {
         }
     }
 
+    /// How fast it goes, in counts per second.
+    fn speed(&self) -> f64 {
+        match (self.doing, self.step().map(|step| step.pace)) {
+            (Doing::Seeking { .. }, Some(Pace::Fast)) => self.order.fast,
+            _ => self.order.slow,
+        }
+    }
+
     pub(super) fn waits_for(&self) -> Waits {
         let step = self.step().filter(|_| matches!(self.doing, Doing::Seeking { .. }));
         let index = match (self.doing, step.map(|step| step.until)) {
@@ -132,9 +166,12 @@ impl Motor {
     /// Looks for the origin.
     ///
     /// # Errors
-    /// Why it does not start: without power, while held, or while it moves.
+    /// Why it does not start: without power, while held, while it moves, or at a speed of 0.
     pub fn start_home(&mut self, now: Instant, order: HomeOrder) -> Result<(), Ignored> {
         self.may_start(false)?;
+        if order.stands_still() {
+            return Err(Ignored::NoSpeed);
+        }
         let mut homing = Homing {
             steps: order.method.steps,
             at: 0,
@@ -143,6 +180,7 @@ impl Motor {
             seen: Inputs::default(),
             mark: None,
             origin: 0,
+            began: now,
             until: order.time_limit.map(|time| now + time),
             order,
         };
@@ -150,7 +188,7 @@ impl Motor {
         if by.is_some_and(|by| self.home_switches(now, homing.order.source).has(by)) {
             homing.steps = homing.order.method.on;
         }
-        self.decel = homing.order.accel;
+        self.goal = Goal::None;
         self.homing = Some(Box::new(homing));
         self.begin(now, Trajectory::halt(now, self.whereabouts(now)), Phase::Homing);
         self.seek(now);
@@ -241,6 +279,7 @@ impl Motor {
 
     fn lose(&mut self, why: HomeEnd, alarm: bool) {
         if let Some(homing) = self.homing.take() {
+            self.goal = Goal::Stop(Slope::Rate(homing.order.slope()), 0.0);
             let forward = homing.heading().unwrap_or(self.forward);
             self.told.push_back(Stage::Lost { why, forward, alarm });
         }
@@ -256,10 +295,7 @@ impl Motor {
         };
         let armed = matches!(step.until, Until::Index(None) | Until::SameIndex);
         homing.doing = Doing::Seeking { armed };
-        let speed = match step.pace {
-            Pace::Fast => homing.order.fast,
-            Pace::Slow => homing.order.slow,
-        };
+        let speed = homing.speed();
         let source = homing.order.source;
         let speed = if step.forward { speed } else { -speed };
         self.told.push_back(Stage::Seeks(step, speed));
@@ -336,16 +372,15 @@ impl Motor {
         let state = self.state(now);
         let Some(homing) = &mut self.homing else { return };
         homing.doing = Doing::Ending;
-        let HomeOrder { fast: speed, accel, way, stop, .. } = homing.order;
+        let HomeOrder { way, stop, .. } = homing.order;
         let origin = homing.origin;
         let from = match stop {
             OriginStop::AtOnce => State::at_rest(origin as f64),
             OriginStop::Ramp => state,
         };
-        let how = Move { start_speed: 0.0, speed, accel, decel: accel };
         let trajectory = match way {
-            0 => Trajectory::stop(now, from, accel),
-            _ => Trajectory::to_position(now, from, origin.saturating_add(way), how),
+            0 => Trajectory::stop(now, from, homing.order.slope()),
+            _ => homing.order.onward(now, from, origin),
         };
         self.forward = way >= 0;
         self.begin(now, trajectory, Phase::Homing);
@@ -353,14 +388,20 @@ impl Motor {
     }
 
     fn home_go(&mut self, now: Instant, from: State, speed: f64) {
-        let trajectory = Trajectory::to_speed(now, from, speed, self.decel, self.decel);
+        let slope = self.home_slope();
+        let trajectory = Trajectory::to_speed(now, from, speed, slope, slope);
         self.forward = speed >= 0.0;
         self.begin(now, trajectory, Phase::Homing);
     }
 
     fn home_brake(&mut self, now: Instant) {
-        let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+        let trajectory = Trajectory::stop(now, self.state(now), self.home_slope());
         self.begin(now, trajectory, Phase::Homing);
+    }
+
+    /// Slope of the homing under way, in counts per second squared.
+    pub(super) fn home_slope(&self) -> f64 {
+        self.homing.as_ref().map_or(0.0, |it| it.order.slope())
     }
 
     /// The switches, as a homing that gets its limits from `source` sees them.

@@ -1,6 +1,7 @@
 //! Limits outside a homing: a switch, or a position that the drive keeps by itself. Into them nothing goes, out
 //! of them everything does.
 
+use super::goal::Goal;
 use super::{Motor, Phase, Stage};
 use crate::event::Ignored;
 use crate::motion::Trajectory;
@@ -51,11 +52,12 @@ impl Motor {
         match self.wants.limit_stop {
             LimitStop::Coast => self.run_out(now),
             LimitStop::Quick => {
+                self.goal = Goal::None;
                 let trajectory = Trajectory::halt(now, self.state(now));
                 self.begin(now, trajectory, Phase::Stopping);
             }
             LimitStop::Ramp => {
-                let trajectory = Trajectory::stop(now, self.state(now), self.decel);
+                let trajectory = self.slow_down(now);
                 self.begin(now, trajectory, Phase::Stopping);
             }
         }

@@ -5,7 +5,12 @@ use crate::motion::Switch;
 use crate::words::Input;
 use proptest::prelude::*;
 
-const HOW: Move = Move { start_speed: 0.0, speed: 4000.0, accel: 20_000.0, decel: 10_000.0 };
+const HOW: Ramp = Ramp {
+    speed: 4000.0,
+    accel: Slope::Rate(20_000.0),
+    decel: Slope::Rate(10_000.0),
+    start_speed: 0.0,
+};
 const COAST: Duration = Duration::from_millis(200);
 
 /// Something that happens to an axis.
@@ -19,7 +24,7 @@ enum Order {
 }
 
 fn ramp(speed: f64) -> Ramp {
-    Ramp { speed, accel: HOW.accel, decel: HOW.decel, start_speed: 0.0 }
+    Ramp { speed, ..HOW }
 }
 
 /// Orders with the milliseconds before each; where `gentle`, none that changes the speed at once.
@@ -81,6 +86,7 @@ impl Bench {
             }
         }
         self.motor.follow(self.now, Wants { switches, ..self.wants });
+        self.wants.jog.iter_mut().for_each(|jog| jog.takes_over = false);
         self.hear();
         if self.motor.take_edge(self.now) {
             self.follow();
@@ -111,13 +117,17 @@ impl Bench {
         let _ = match order {
             Order::Follow { power, stop, quick_stop, jog } => {
                 let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
+                let jog = jog.map(|ramp| {
+                    let same = self.wants.jog.is_some_and(|before| before.ramp == ramp);
+                    Jog { ramp, takes_over: !same }
+                });
                 self.wants = Wants { power, stop, quick_stop, jog, ..self.wants };
                 Ok(())
             }
             Order::Move { target, interrupt } => {
                 self.motor.start_move(now, |here| here + target, HOW, interrupt)
             }
-            Order::Run { speed } => self.motor.start_run(now, ramp(speed)),
+            Order::Run { speed } => self.motor.start_run(now, ramp(speed), false),
             Order::Stop => {
                 self.motor.stop(now);
                 Ok(())
@@ -235,7 +245,7 @@ fn says_why_it_does_not_start() {
         }
         bench.wants = wants;
         bench.follow();
-        bench.motor.start_run(bench.now, ramp(5.0))
+        bench.motor.start_run(bench.now, ramp(5.0), false)
     };
     let ready = Wants { power: true, ..Wants::default() };
     assert_eq!(start(ready, false), Ok(()));

@@ -5,12 +5,14 @@
 
 mod homing;
 mod line;
+mod quantity;
 mod row;
 mod segments;
 mod wiring;
 
 pub use homing::*;
 pub use line::*;
+pub use quantity::*;
 pub use row::*;
 pub use segments::*;
 pub use wiring::*;
@@ -56,7 +58,11 @@ pub struct RawModel {
     /// Numbers that the drive computes or goes by, each with the row that holds it, by role. What an
     /// output goes by may be a number with its unit too (`20 rpm`).
     #[serde(default)]
-    pub quantities: BTreeMap<String, String>,
+    pub quantities: BTreeMap<String, RawQuantity>,
+    /// When a value counts that is written to the row of a setting, where the manual prints no effect time
+    /// (`applies` of the row) and `quantities` says no more: `live`, `at_order` (default) or `at_start`.
+    /// Limits that are watched (`limit.soft_pos`, `limit.soft_neg`) are live then.
+    pub settings_taken: Option<String>,
     /// Where signals come from and where they show.
     #[serde(default)]
     pub signals: RawSignals,
@@ -260,6 +266,7 @@ pub const KEYS: &[&str] = &[
     "see",
     "segments",
     "servo",
+    "settings_taken",
     "shows",
     "signals",
     "silence",
@@ -273,6 +280,7 @@ pub const KEYS: &[&str] = &[
     "stop",
     "stride",
     "switches",
+    "taken",
     "terminals",
     "then",
     "through",

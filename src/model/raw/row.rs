@@ -26,9 +26,9 @@ pub struct RawRow {
     /// What a master may do: `r`, `w` or `rw` (the default).
     #[serde(default)]
     pub access: RawAccess,
-    /// When a new value takes effect; default `now`.
-    #[serde(default)]
-    pub applies: RawApplies,
+    /// When a new value takes effect, as printed. Left out where nothing is printed: then at once, but for the
+    /// settings of motions, of which `settings_taken` tells.
+    pub applies: Option<RawApplies>,
     /// While this holds, a write is refused with cause `state`.
     pub lock: Option<RawLock>,
     /// Never kept over power-off, whatever the window or a save command says.
@@ -108,12 +108,11 @@ pub enum RawAccess {
 }
 
 /// When a written value takes effect.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawApplies {
     /// At once.
-    #[default]
     Now,
     /// When the axis stands still.
     AtStop,

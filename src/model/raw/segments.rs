@@ -1,6 +1,6 @@
 //! Motions by number: tables of segments that signals select and start, and chains of them.
 
-use super::RawChoice;
+use super::{RawChoice, RawQuantity};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub struct RawPositionSegments {
     pub n: [u16; 2],
     /// What a segment goes by, out of the settings of a move, each with its row; `{n}` in the name of a row
     /// is the number of the segment.
-    pub quantities: BTreeMap<String, String>,
+    pub quantities: BTreeMap<String, RawQuantity>,
     /// Are targets ways or positions: `relative` (default), `absolute` or, for an empty segment, `none`. In the
     /// name of a row `{n}` is the number of the segment; a value without a code is an empty segment too.
     pub kind: Option<RawChoice<String>>,
@@ -44,7 +44,7 @@ pub struct RawVelocitySegments {
     pub n: [u16; 2],
     /// What a segment goes by, out of the settings of a run, each with its row; `{n}` in the name of a row
     /// is the number of the segment.
-    pub quantities: BTreeMap<String, String>,
+    pub quantities: BTreeMap<String, RawQuantity>,
     /// Does a segment last while `segment_run` is active, `level` (default), or from its edge on, `edge`?
     pub trigger: Option<RawChoice<String>>,
     /// What was assumed, and why.
@@ -90,7 +90,7 @@ pub struct RawCondition {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawInterrupt {
     /// What it goes by, out of the settings of a move, each with its row; the target is a way.
-    pub quantities: BTreeMap<String, String>,
+    pub quantities: BTreeMap<String, RawQuantity>,
     /// May it start: `off`, `free` (default) or `locks`.
     pub rule: Option<RawChoice<String>>,
     /// What was assumed, and why.

@@ -215,8 +215,7 @@ impl Wirer<'_> {
 
     /// Rows in increments and what says how many of them make a revolution go together.
     fn increments_fit(&mut self, known: bool, path: &Path) {
-        let settings =
-            self.wiring.axis.settings.iter().map(|(_, row)| self.rows.map.row(*row).unit);
+        let settings = self.wiring.axis.settings.iter().map(|it| self.rows.map.row(it.row).unit);
         let thresholds = self.wiring.thresholds.iter().map(|(_, number)| match number {
             Number::Fixed(unit) => *unit,
             Number::Row(row) => self.rows.map.row(*row).unit,

@@ -13,7 +13,7 @@ use crate::problem::{At, Path, Problem};
 use crate::time::Duration;
 use crate::units::Dimension;
 use crate::words::RowId;
-use crate::words::{AlarmCause, Input};
+use crate::words::{AlarmCause, Input, Taken};
 
 pub(in crate::model) fn compile(
     raw: &RawModel,
@@ -26,8 +26,8 @@ pub(in crate::model) fn compile(
         reactions: vec![Reaction::None; len],
         ..Wiring::default()
     };
-    let mut wirer = Wirer { rows, problems, wiring };
-    wirer.quantities(&raw.quantities);
+    let mut wirer = Wirer { rows, problems, wiring, taken: Taken::AtOrder };
+    wirer.quantities(raw);
     let signals = Path::root().key("signals");
     wirer.inputs(&raw.signals.inputs, &signals.key("inputs"));
     wirer.outputs(&raw.signals.outputs, &signals.key("outputs"));
@@ -39,6 +39,7 @@ pub(in crate::model) fn compile(
     raw.homing.iter().for_each(|homing| wirer.homing(homing));
     wirer.limits(raw.limits.as_ref());
     wirer.axis(raw.axis.as_ref());
+    wirer.settings_taken(raw);
     wirer.deviation_fits();
     wirer.alarm_history(&raw.alarm_history);
     wirer.alarms_fit(raw);
@@ -50,6 +51,8 @@ pub(super) struct Wirer<'a> {
     pub(super) rows: &'a Compiled,
     pub(super) problems: &'a mut Vec<Problem>,
     pub(super) wiring: Wiring,
+    /// When settings count of which the file says nothing.
+    pub(super) taken: Taken,
 }
 
 impl Wirer<'_> {

@@ -1,17 +1,18 @@
 //! Interrupt positioning, compiled: the rows that it goes by, and whether its signals go with it.
 
+use super::SettingRow;
 use super::choice::Choice;
 use super::compile::Wirer;
 use super::segment_rows::MOVE;
 use crate::model::raw::RawInterrupt;
 use crate::problem::{Path, Problem};
-use crate::words::{Input, InterruptRule, Output, RowId, Setting, Word};
+use crate::words::{Input, InterruptRule, Output, RowId, Word};
 
 /// A move that takes the place of a motion under way.
 #[derive(Debug)]
 pub struct Interrupt {
     /// The rows that it goes by.
-    pub settings: Vec<(Setting, RowId)>,
+    pub settings: Vec<SettingRow>,
     /// May it start?
     pub rule: Choice<InterruptRule>,
 }
@@ -19,7 +20,7 @@ pub struct Interrupt {
 impl Interrupt {
     /// Every row of it.
     pub(super) fn rows(&self) -> impl Iterator<Item = RowId> {
-        self.settings.iter().map(|(_, row)| *row).chain(self.rule.row())
+        self.settings.iter().map(|it| it.row).chain(self.rule.row())
     }
 }
 

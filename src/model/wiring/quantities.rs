@@ -1,20 +1,25 @@
 //! Numbers by role: rows that show what the drive computes, and what its motions and outputs go by.
 
-use super::Shows;
 use super::compile::Wirer;
-use crate::model::RowId;
+use super::{SettingRow, Shows};
+use crate::model::raw::{RawModel, RawQuantity};
+use crate::model::{Applies, RowId};
 use crate::problem::{At, Path, Problem, suggest};
 use crate::units::{Dimension, Unit};
-use crate::words::{Quantity, Setting, Threshold, Word};
-use std::collections::BTreeMap;
+use crate::words::{Quantity, Setting, Taken, Threshold, Word};
 
 impl Wirer<'_> {
-    pub(super) fn quantities(&mut self, raw: &BTreeMap<String, String>) {
+    pub(super) fn quantities(&mut self, raw: &RawModel) {
+        let path = Path::root().key("settings_taken");
+        let taken = raw.settings_taken.as_deref();
+        let taken = taken.and_then(|it| self.word(it, "time for a setting", &path));
+        self.taken = taken.unwrap_or(Taken::AtOrder);
         let path = Path::root().key("quantities");
-        for (name, register) in raw {
-            let path = path.key(name);
+        for (name, raw) in &raw.quantities {
+            let (path, register) = (path.key(name), raw.register());
             if let Some(threshold) = Threshold::parse(name) {
                 self.threshold(threshold, register, &path);
+                self.no_setting(name, raw, &path);
                 continue;
             }
             let (quantity, setting) = (Quantity::parse(name), Setting::parse(name));
@@ -26,11 +31,56 @@ impl Wirer<'_> {
             if let Some(quantity) = quantity {
                 self.dimension(row, name, &[quantity.dimension()], &path);
                 self.show(row, Shows::Quantity(quantity), &path, At::Value);
+                self.no_setting(name, raw, &path);
             }
             if let Some(setting) = setting {
-                self.dimension(row, name, setting.dimensions(), &path);
-                self.wiring.axis.settings.push((setting, row));
+                let it = self.setting(setting, row, raw, &path);
+                self.wiring.axis.settings.push(it);
             }
+        }
+    }
+
+    /// The row of a setting, and when its values count.
+    pub(super) fn setting(
+        &mut self,
+        setting: Setting,
+        row: RowId,
+        raw: &RawQuantity,
+        path: &Path,
+    ) -> SettingRow {
+        self.dimension(row, setting.name(), setting.dimensions(), path);
+        let said = raw
+            .taken()
+            .and_then(|it| self.word::<Taken>(it, "time for a setting", &path.key("taken")));
+        let printed = match self.rows.map.row(row).applies {
+            Some(Applies::Now) => Some(Taken::Live),
+            Some(Applies::AtStop) => Some(Taken::AtStart),
+            Some(Applies::PowerOn) | None => None,
+        };
+        let silent = if setting.is_bound() { Taken::Live } else { self.taken };
+        let slot = self.wiring.axis.slots;
+        self.wiring.axis.slots += 1;
+        SettingRow { setting, row, taken: said.or(printed).unwrap_or(silent), slot }
+    }
+
+    /// Something goes by `settings_taken`. To be called when the axis is wired.
+    pub(super) fn settings_taken(&mut self, raw: &RawModel) {
+        let silent =
+            |it: &SettingRow| !it.setting.is_bound() && self.rows.map.row(it.row).applies.is_none();
+        if raw.settings_taken.is_some() && !self.wiring.axis.all_settings().any(silent) {
+            let what =
+                "`settings_taken` changes nothing: the rows of all settings say when they apply";
+            let problem = Problem::key(Path::root().key("settings_taken"), what);
+            self.problems.push(problem.advise("leave it out"));
+        }
+    }
+
+    /// What no motion goes by counts whenever somebody looks.
+    fn no_setting(&mut self, name: &str, raw: &RawQuantity, path: &Path) {
+        if raw.taken().is_some() {
+            let what = format!("`taken` changes nothing: `{name}` is no setting of a motion");
+            let problem = Problem::key(path.key("taken"), what);
+            self.problems.push(problem.advise("leave it out"));
         }
     }
 

@@ -1,15 +1,16 @@
 //! The rows of segments, found and checked.
 
+use super::SettingRow;
 use super::choice::Choice;
 use super::compile::Wirer;
 use super::segment_signals::SELECTS;
 use super::segments::{PositionSegment, PositionSegments, VelocitySegments};
 use crate::model::expand::number;
 use crate::model::raw::{
-    RawChoice, RawChosen, RawPositionSegments, RawSegments, RawVelocitySegments,
+    RawChoice, RawChosen, RawPositionSegments, RawQuantity, RawSegments, RawVelocitySegments,
 };
 use crate::problem::{Path, Problem, suggest};
-use crate::words::{Input, Lasts, RowId, Setting, Target, Word};
+use crate::words::{Input, Lasts, Setting, Target, Word};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -136,15 +137,15 @@ impl Wirer<'_> {
     /// The rows that a segment, or interrupt positioning, goes by.
     pub(super) fn segment_settings(
         &mut self,
-        raw: &BTreeMap<String, String>,
+        raw: &BTreeMap<String, RawQuantity>,
         n: u16,
         takes: &Takes,
         path: &Path,
-    ) -> Vec<(Setting, RowId)> {
+    ) -> Vec<SettingRow> {
         let path = path.key("quantities");
         let all = || takes.needs.iter().chain(takes.takes).map(|it| it.name());
         let mut settings = Vec::new();
-        for (name, register) in raw {
+        for (name, raw) in raw {
             let path = path.key(name);
             let Some(setting) = Setting::parse(name).filter(|_| all().any(|it| it == name)) else {
                 let advice = suggest::did_you_mean(name, all())
@@ -153,9 +154,8 @@ impl Wirer<'_> {
                 self.problems.push(Problem::key(path, what).advise(advice));
                 continue;
             };
-            let Some(row) = self.row(&number(register, n), &path) else { continue };
-            self.dimension(row, name, setting.dimensions(), &path);
-            settings.push((setting, row));
+            let Some(row) = self.row(&number(raw.register(), n), &path) else { continue };
+            settings.push(self.setting(setting, row, raw, &path));
         }
         for need in takes.needs.iter().filter(|it| !raw.contains_key(it.name())) {
             let what = format!("no row holds `{}`", need.name());

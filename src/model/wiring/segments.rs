@@ -1,8 +1,9 @@
 //! Motions by number, compiled: which rows each segment goes by.
 
+use super::SettingRow;
 use super::chain::{ChainRules, Link};
 use super::choice::Choice;
-use crate::words::{Lasts, RowId, Setting, Target};
+use crate::words::{Lasts, RowId, Target};
 
 /// Motions by number.
 #[derive(Debug, Default)]
@@ -28,7 +29,7 @@ pub struct PositionSegments {
 #[derive(Debug)]
 pub struct PositionSegment {
     /// The rows that it goes by.
-    pub settings: Vec<(Setting, RowId)>,
+    pub settings: Vec<SettingRow>,
     /// What its target is.
     pub kind: Choice<Target>,
     /// How it gives way to the next.
@@ -41,7 +42,7 @@ pub struct VelocitySegments {
     /// Number of the first.
     pub first: u16,
     /// The rows that each goes by.
-    pub list: Vec<Vec<(Setting, RowId)>>,
+    pub list: Vec<Vec<SettingRow>>,
     /// How long one lasts.
     pub trigger: Choice<Lasts>,
 }
@@ -55,25 +56,29 @@ impl PositionSegments {
 
 impl VelocitySegments {
     /// The rows of the segment with that number.
-    pub fn get(&self, number: u16) -> Option<&[(Setting, RowId)]> {
+    pub fn get(&self, number: u16) -> Option<&[SettingRow]> {
         self.list.get(usize::from(number.checked_sub(self.first)?)).map(Vec::as_slice)
     }
 }
 
 impl Segments {
+    /// The settings of all of them.
+    pub fn settings(&self) -> impl Iterator<Item = &SettingRow> {
+        let moves = self.position.iter().flat_map(|it| &it.list).flat_map(|it| &it.settings);
+        moves.chain(self.velocity.iter().flat_map(|it| &it.list).flatten())
+    }
+
     /// Every row that a segment goes by.
     pub fn rows(&self) -> impl Iterator<Item = RowId> {
+        self.settings().map(|it| it.row).chain(self.rules())
+    }
+
+    /// The rows of what is no number of a segment's motion: kinds, triggers and chains.
+    pub fn rules(&self) -> impl Iterator<Item = RowId> {
         let moves = self.position.iter().flat_map(|it| &it.list).flat_map(|segment| {
             let links = segment.link.iter().flat_map(Link::rows);
-            rows_of(&segment.settings).chain(segment.kind.row()).chain(links)
+            segment.kind.row().into_iter().chain(links)
         });
-        let runs = self.velocity.iter().flat_map(|it| {
-            it.list.iter().flat_map(|settings| rows_of(settings)).chain(it.trigger.row())
-        });
-        moves.chain(runs)
+        moves.chain(self.velocity.iter().filter_map(|it| it.trigger.row()))
     }
-}
-
-fn rows_of(settings: &[(Setting, RowId)]) -> impl Iterator<Item = RowId> {
-    settings.iter().map(|(_, row)| *row)
 }

@@ -17,11 +17,12 @@ pub(in crate::model) fn check_inert(
     let mut told: Vec<&Path> = Vec::new();
     for ((id, row), path) in rows.map.rows().zip(&rows.paths) {
         let wired = used[usize::from(id.0)];
-        // What a homing goes by is read when it starts, and that is at a standstill; so does an axis turn round.
-        let mut standing = wiring.homing.iter().flat_map(Homing::rows).chain(wiring.axis.reversed);
-        let at_stop = row.applies == Applies::AtStop && standing.any(|it| it == id);
-        let at_once = row.applies == Applies::Now || at_stop;
-        let waits = !at_once && wiring.reaction(id) != Reaction::Line;
+        let fits = match row.applies {
+            None | Some(Applies::Now) => true,
+            Some(Applies::AtStop) => takes_standstill(wiring).any(|it| it == id),
+            Some(Applies::PowerOn) => false,
+        };
+        let waits = !fits && wiring.reaction(id) != Reaction::Line;
         if wired && waits && !told.contains(&path) {
             told.push(path);
             let what =
@@ -45,6 +46,18 @@ pub(in crate::model) fn check_inert(
     }
 }
 
+/// Rows whose values can count from a standstill on: an axis turns round there and takes settings, and a
+/// homing starts.
+fn takes_standstill(wiring: &Wiring) -> impl Iterator<Item = RowId> {
+    let counts = match wiring.axis.counts_per_rev {
+        Counts::Row(row) => Some(row),
+        Counts::Fixed(_) => None,
+    };
+    let settings = wiring.axis.all_settings().map(|it| it.row);
+    let homing = wiring.homing.iter().flat_map(Homing::rows);
+    settings.chain(homing).chain(wiring.axis.reversed).chain(counts)
+}
+
 fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     let mut used = vec![false; len];
     let mut mark = |row: RowId| used[usize::from(row.0)] = true;
@@ -63,7 +76,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     wiring.axis.reversed.into_iter().for_each(&mut mark);
     wiring.axis.gear.iter().flat_map(|it| [it.numerator, it.denominator]).for_each(&mut mark);
     wiring.axis.speed_unit.iter().for_each(|it| mark(it.row));
-    wiring.axis.settings.iter().for_each(|(_, row)| mark(*row));
+    wiring.axis.settings.iter().for_each(|it| mark(it.row));
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
     wiring.axis.segments.rows().for_each(&mut mark);

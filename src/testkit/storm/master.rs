@@ -2,7 +2,7 @@
 
 use super::dice::Dice;
 use super::world::World;
-use crate::model::{Model, Row, RowId};
+use crate::model::{Model, Row, RowId, SettingRow};
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
 
 /// A request: to whom, and what.
@@ -83,7 +83,7 @@ fn order(model: &Model, dice: &mut Dice) -> Vec<u8> {
 
 /// A write of a setting that motions go by, of a modest size.
 pub fn setting(model: &Model, dice: &mut Dice) -> Vec<u8> {
-    let Some((_, id)) = dice.pick(&model.wiring.axis.settings) else {
+    let Some(SettingRow { row: id, .. }) = dice.pick(&model.wiring.axis.settings) else {
         return write_one(model, dice);
     };
     let row = model.map.row(*id);
@@ -101,7 +101,7 @@ pub fn setting(model: &Model, dice: &mut Dice) -> Vec<u8> {
 /// A row, more often one that motions go by or that has the line's settings.
 fn row<'a>(model: &'a Model, dice: &mut Dice) -> &'a Row {
     let wiring = &model.wiring;
-    let settings = wiring.axis.settings.iter().map(|(_, row)| *row);
+    let settings = wiring.axis.settings.iter().map(|it| it.row);
     let terminals = wiring.input_terminals.iter().flat_map(|it| it.functions.iter().copied());
     let line = [model.line.unit.row, model.line.baud.row, model.line.format.row];
     let hot: Vec<RowId> = settings.chain(terminals).chain(line).collect();
