@@ -7,6 +7,7 @@
 //! of the home switch lies beyond the end of travel; an index pulse that lies at a limit or beyond. Room for ramps is
 //! no condition: a hard stop does as well.
 
+mod broken_off;
 mod course;
 mod oracle;
 mod print;

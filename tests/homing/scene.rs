@@ -190,7 +190,8 @@ pub fn yako(model: &'static str, method: i64, scene: &Scene) -> Setting {
         ("input_level", scene.closed),
     ];
     if model == "yako-closed-loop" {
-        set.push(("deviation_alarm", 65_535));
+        // An increment is a count then, and no ramp beyond a hard stop is so long.
+        set.extend([("encoder_resolution", 1000), ("deviation_alarm", 65_535)]);
     }
     Setting::new(model, scene, &set, "01 06 0027 0010")
 }

@@ -65,8 +65,7 @@ fn hold(
         "k-series" => per_s(scene.acceleration() * 10),
         _ => high * 1000.0 / scene.ramp_ms as f64,
     };
-    // 200 increments of 4000 a revolution.
-    let speeds = Speeds { high, low: per_s(scene.slow), slope, collision: counts_per_rev / 20.0 };
+    let speeds = Speeds { high, low: per_s(scene.slow), slope, collision: 200.0 };
     let course = Course::new(all, speeds, scene);
     let mut rig = setting.begin();
     let begun = rig.events().iter().find_map(|event| match event.what {
