@@ -22,6 +22,7 @@ mod schema;
 mod shell;
 mod source;
 mod state;
+mod status;
 mod storm;
 mod tidy;
 mod transcripts;

@@ -62,6 +62,8 @@ pub struct Jog {
     pub ramp: Ramp,
     /// Does another level ask for it than for the one under way?
     pub takes_over: bool,
+    /// Does it go by the position, and not by the speed?
+    pub by_position: bool,
 }
 
 /// One axis.
@@ -350,7 +352,7 @@ impl Motor {
     }
 
     fn jog(&mut self, now: Instant, jog: Jog) {
-        let Jog { ramp, takes_over } = jog;
+        let Jog { ramp, takes_over, .. } = jog;
         let forward = ramp.speed >= 0.0;
         if !takes_over && self.phase == (Phase::Jogging { forward }) {
             return self.retune(now, Goal::Speed(ramp));
@@ -435,7 +437,8 @@ impl Motor {
             Phase::Running | Phase::Jogging { .. } | Phase::Homing | Phase::Coasting => Lag::NONE,
         };
         self.by_speed = match phase {
-            Phase::Running | Phase::Jogging { .. } => true,
+            Phase::Running => true,
+            Phase::Jogging { .. } => !self.wants.jog.is_some_and(|jog| jog.by_position),
             Phase::Stopping => self.by_speed,
             Phase::Standing | Phase::Moving | Phase::Homing | Phase::Coasting => false,
         };

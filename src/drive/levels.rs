@@ -44,6 +44,11 @@ impl Level {
         }
     }
 
+    /// Does it ask for position control?
+    pub(super) fn by_position(self) -> bool {
+        self.kind == LevelKind::Inch
+    }
+
     /// The velocity segment that it asks for.
     pub(super) fn segment(self) -> Option<u16> {
         match self.kind {
@@ -68,7 +73,10 @@ impl Drive {
 
     /// What the axis is to hear of it.
     pub(super) fn jog(&self, run: Option<(Level, Ramp)>) -> Option<Jog> {
-        run.map(|(level, ramp)| Jog { ramp, takes_over: !self.is_under_way(level) })
+        run.map(|(level, ramp)| {
+            let takes_over = !self.is_under_way(level);
+            Jog { ramp, takes_over, by_position: level.by_position() }
+        })
     }
 
     /// How a run goes that `level` asks for.

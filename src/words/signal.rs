@@ -18,7 +18,7 @@ words! {
         LimitPos "limit_pos" "level: the positive limit; no motion goes on in the positive direction",
         LimitNeg "limit_neg" "level: the negative limit; no motion goes on in the negative direction",
         HomeStart "home_start" "rising edge: look for the origin",
-        InchPos "inch_pos" "level: the axis goes at `inch.speed` while active, a jog with settings of its own; with `inch_neg` at the same time it stops",
+        InchPos "inch_pos" "level: the axis goes at `inch.speed` while active, a jog in position control with settings of its own; with `inch_neg` at the same time it stops",
         InchNeg "inch_neg" "level: the same in the negative direction",
         Run "run" "level: the axis goes at `run.speed` while active",
         MoveStart "move_start" "rising edge: go `move.target` counts on, or with `move.absolute` to that position; ignored while the axis moves, but a run by `run_start` goes over into a move from where it is",

@@ -119,7 +119,7 @@ impl Bench {
                 let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
                 let jog = jog.map(|ramp| {
                     let same = self.wants.jog.is_some_and(|before| before.ramp == ramp);
-                    Jog { ramp, takes_over: !same }
+                    Jog { ramp, takes_over: !same, by_position: false }
                 });
                 self.wants = Wants { power, stop, quick_stop, jog, ..self.wants };
                 Ok(())
