@@ -213,6 +213,10 @@ fn each_output_shows_both_ways() {
                 let row = wiring(&rig).user_outputs.expect("it has such a row");
                 set_bit(&mut rig, row, output as u16 - Output::User0 as u16, true);
             }
+            Output::Settled => {
+                give(&mut rig, Action::Enable);
+                rig.advance(Duration::from_secs(1));
+            }
             Output::InPosition | Output::Arrived => {
                 give(&mut rig, Action::Enable);
                 give(&mut rig, Action::MoveStart);

@@ -15,7 +15,8 @@ impl Drive {
         let reached = limit(Threshold::ReachedSpeed).zip(limit(Threshold::ReachedWindow));
         let agrees = ordered.zip(limit(Threshold::AgreesWindow));
         let agrees = agrees.is_some_and(|(to, window)| (speed - to).abs() < window);
-        let arrived = if ordered.is_some() { agrees } else { self.is_at_rest() };
+        let settled = self.is_settled();
+        let arrived = if ordered.is_some() { agrees } else { settled };
         let from = limit(Threshold::CommandSpeed).unwrap_or(0.0);
         let present = match ordered {
             Some(to) => to.abs() > from,
@@ -32,6 +33,7 @@ impl Drive {
                 reached.is_some_and(|(to, window)| (speed.abs() - to).abs() <= window),
             )
             .with(Output::SpeedAgrees, agrees)
+            .with(Output::Settled, settled)
             .with(Output::Arrived, arrived)
             .with(Output::CommandPresent, present)
     }
@@ -63,7 +65,7 @@ impl Drive {
     }
 
     /// Is the command at rest in position control, and the axis with it for as long as it takes to settle?
-    fn is_at_rest(&self) -> bool {
+    fn is_settled(&self) -> bool {
         let at = self.motor.rests_at(self.now, self.position_window());
         let follows = self.motor.control() == Some(Control::Position);
         follows && at.is_some_and(|at| at + self.settling_time() <= self.now)

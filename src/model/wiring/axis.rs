@@ -276,6 +276,7 @@ impl Wirer<'_> {
             Output::Turning,
             Output::SpeedReached,
             Output::SpeedAgrees,
+            Output::Settled,
             Output::Arrived,
             Output::Coincides,
             Output::Near,

@@ -7,7 +7,7 @@ use crate::units::Unit;
 use crate::words::{Output, Quantity, Threshold, Word};
 
 /// An output with the number that it goes by, and whether it can do without.
-const USES: [(Output, Threshold, bool); 18] = [
+const USES: [(Output, Threshold, bool); 20] = [
     (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
     (Output::Turning, Threshold::TurningSpeed, false),
     (Output::SpeedReached, Threshold::ReachedSpeed, false),
@@ -16,6 +16,8 @@ const USES: [(Output, Threshold, bool); 18] = [
     (Output::Arrived, Threshold::AgreesWindow, false),
     (Output::Arrived, Threshold::PositionWindow, true),
     (Output::Arrived, Threshold::PositionSettle, true),
+    (Output::Settled, Threshold::PositionWindow, true),
+    (Output::Settled, Threshold::PositionSettle, true),
     (Output::InPosition, Threshold::PositionWindow, true),
     (Output::InPosition, Threshold::PositionSettle, true),
     (Output::CommandPresent, Threshold::CommandSpeed, true),
