@@ -1,13 +1,15 @@
 //! What a drive shows in each situation: one table a model, `tests/status/<model>.txt`, out of the manual.
 //!
 //! A table's columns are situations, each the steps of a transcript from a drive that is ready; its rows are bits and numbers,
-//! read over the wire. `.` is not looked at. Of a row with bits all sixteen are: those that the table has not are 0.
+//! read over the wire. `.` is not looked at. Of a row with bits all sixteen are: those that the table has not are 0. Behind `by` stands a
+//! setting with its value: it is written before such a row is read, in the order of the table and after the others.
 
 use crate::expect::{files, read};
 use crate::kit::{Files, MODELS};
 use drivemu::bench::Library;
 use drivemu::model::{Model, Order, RowId, WordOrder};
 use drivemu::testkit::transcript::{self, Script};
+use drivemu::units::parse_integer;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -27,7 +29,15 @@ struct Table {
 struct Line {
     register: String,
     bit: Option<u8>,
+    by: Option<(String, i64)>,
     cells: Vec<String>,
+}
+
+/// What a register shows, once a setting has been written where it needs one.
+struct Shown<'a> {
+    register: &'a str,
+    by: Option<&'a (String, i64)>,
+    value: i64,
 }
 
 #[test]
@@ -91,11 +101,16 @@ impl Table {
         if cells.len() != self.columns.len() {
             return Err(format!("{name}: {} cells, not {}", cells.len(), self.columns.len()));
         }
+        let (place, by) = place.split_once(" by ").unwrap_or((&place, ""));
+        let by = match by.split_once(' ') {
+            None => None,
+            Some((row, value)) => Some((row.to_owned(), parse_integer(value).ok_or("no value")?)),
+        };
         let (register, bit) = match place.split_once(" bit ") {
             Some((register, bit)) => (register, Some(bit.parse().map_err(|_| "no bit")?)),
-            None => (place.as_str(), None),
+            None => (place, None),
         };
-        self.rows.push(Line { register: register.into(), bit, cells });
+        self.rows.push(Line { register: register.into(), bit, by, cells });
         Ok(())
     }
 
@@ -103,8 +118,13 @@ impl Table {
     fn check(&self, model: &Model, column: usize, situation: &str) -> Result<(), String> {
         let mut text = format!("{}\n{}", self.setup, self.situations[situation]);
         let mut registers: BTreeMap<usize, &str> = BTreeMap::new();
-        for (register, value) in self.values(column)? {
-            let row = model.map.find(register).ok_or(format!("no register `{register}`"))?;
+        for Shown { register, by, value } in self.values(column)? {
+            let find = |name: &str| model.map.find(name).ok_or(format!("no register `{name}`"));
+            if let Some((setting, value)) = by {
+                let at = model.map.row(find(setting)?).at;
+                write!(text, "\n> 06 {at:04X} {value:04X}").expect("a string");
+            }
+            let row = find(register)?;
             registers.insert(text.lines().count() + 2, register);
             let at = model.map.row(row).at;
             let words = words(model, row, value);
@@ -119,25 +139,23 @@ impl Table {
         })
     }
 
-    /// What each register shows in a column, in the order of the table.
-    fn values(&self, column: usize) -> Result<Vec<(&str, i64)>, String> {
-        let mut values: Vec<(&str, i64)> = Vec::new();
-        for Line { register, bit, cells } in &self.rows {
+    /// What each register shows in a column, in the order of the table, those that need a setting last.
+    fn values(&self, column: usize) -> Result<Vec<Shown<'_>>, String> {
+        let mut values: Vec<Shown<'_>> = Vec::new();
+        for Line { register, bit, by, cells } in &self.rows {
             let cell = &cells[column];
             if cell == "." {
                 continue;
             }
-            let value = drivemu::units::parse_integer(cell).ok_or(format!("no number `{cell}`"))?;
-            let Some(bit) = bit else {
-                values.push((register, value));
-                continue;
-            };
-            let shown = value << bit;
-            match values.iter_mut().find(|(it, _)| it == register) {
-                Some((_, word)) => *word |= shown,
-                None => values.push((register, shown)),
+            let number = parse_integer(cell).ok_or(format!("no number `{cell}`"))?;
+            let (by, value) = (by.as_ref(), number << bit.unwrap_or(0));
+            let same = |it: &&mut Shown<'_>| it.register == register && it.by.or(by).is_none();
+            match values.iter_mut().find(same) {
+                Some(word) => word.value |= value,
+                None => values.push(Shown { register, by, value }),
             }
         }
+        values.sort_by_key(|it| it.by.is_some());
         Ok(values)
     }
 }
