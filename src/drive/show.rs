@@ -35,9 +35,10 @@ impl Drive {
             Quantity::PositionActual => self.position(),
             Quantity::PositionFeedback => self.feedback(),
             Quantity::PositionCommand => self.feedback().saturating_add(self.deviation()),
-            Quantity::CommandRate | Quantity::SpeedActual | Quantity::ElectricalAngle => {
-                self.measure(quantity).round() as i64
-            }
+            Quantity::CommandRate
+            | Quantity::SpeedActual
+            | Quantity::ElectricalAngle
+            | Quantity::BusVoltage => self.measure(quantity).round() as i64,
             Quantity::EncoderAngle => self.encoder_angle(),
             Quantity::EncoderTurns => self.encoder_turns(),
             Quantity::SegmentRunning => self.segment.into(),
@@ -56,10 +57,11 @@ impl Drive {
 
     /// `position` as the row of the actual position shows it, which has fewer bits than an axis has counts.
     pub(super) fn wrapped(&self, position: i64) -> i64 {
-        let shows = Shows::Quantity(Quantity::PositionActual);
-        let rows = self.model.map.rows().map(|(id, row)| (self.model.wiring.shows(id), row.kind));
-        let mut kinds = rows.filter(|(it, _)| *it == Some(&shows)).map(|(_, kind)| kind);
-        kinds.next().map_or(position, |kind| kind.value(kind.wrapped(position)))
+        let row = self.model.row_showing(&Shows::Quantity(Quantity::PositionActual));
+        row.map_or(position, |row| {
+            let kind = self.model.map.row(row).kind;
+            kind.value(kind.wrapped(position))
+        })
     }
 
     /// A number that comes in parts of its base unit.
@@ -72,8 +74,22 @@ impl Drive {
                 let turn = self.encoder_angle() as f64 / self.counts_per_rev;
                 (turn * poles).fract() * 360.0
             }
+            Quantity::BusVoltage => self.bus_voltage(),
             _ => self.quantity(quantity) as f64,
         }
+    }
+
+    /// In volts.
+    fn bus_voltage(&self) -> f64 {
+        let standing = self.standing_causes();
+        let mut alarms = self.model.wiring.alarms.iter().filter(|it| standing.has(it.cause));
+        let nominal = || {
+            let shows = Shows::Quantity(Quantity::BusVoltage);
+            let row = self.model.row_showing(&shows)?;
+            let row = self.model.map.row(row);
+            Some(row.kind.value(row.init) as f64 * row.unit.scale)
+        };
+        alarms.find_map(|it| it.bus_voltage).or_else(nominal).unwrap_or(0.0)
     }
 
     /// Counts that the axis is behind its command.
@@ -99,7 +115,10 @@ impl Drive {
         let unit = self.unit_of(row);
         let row = self.model.map.row(row);
         match quantity {
-            Quantity::SpeedActual | Quantity::CommandRate | Quantity::ElectricalAngle => {
+            Quantity::SpeedActual
+            | Quantity::CommandRate
+            | Quantity::ElectricalAngle
+            | Quantity::BusVoltage => {
                 row.kind.raw((self.measure(quantity) / unit.scale).round() as i64)
             }
             // A counter that is full begins anew; it does not stick.

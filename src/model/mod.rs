@@ -67,10 +67,16 @@ impl Model {
     /// The row that a newcomer would read first: where the axis stands, or else any row that may be read.
     pub fn showcase(&self) -> Option<&Row> {
         let position = Shows::Quantity(crate::words::Quantity::PositionActual);
-        let shows = |id: RowId| self.wiring.shows(id) == Some(&position);
-        let found = self.map.rows().find(|(id, _)| shows(*id));
-        found
-            .or_else(|| self.map.rows().find(|(_, row)| row.access != Access::Write))
-            .map(|(_, row)| row)
+        let found = self.row_showing(&position).map(|id| self.map.row(id));
+        found.or_else(|| {
+            let mut rows = self.map.rows().map(|(_, row)| row);
+            rows.find(|row| row.access != Access::Write)
+        })
+    }
+
+    /// The row that shows it.
+    pub fn row_showing(&self, shows: &Shows) -> Option<RowId> {
+        let mut rows = self.map.rows().map(|(id, _)| id);
+        rows.find(|id| self.wiring.shows(*id) == Some(shows))
     }
 }

@@ -350,7 +350,7 @@ impl Axis {
 }
 
 /// An alarm of the model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alarm {
     /// Why.
     pub cause: AlarmCause,
@@ -358,6 +358,8 @@ pub struct Alarm {
     pub code: u16,
     /// Does a reset clear it?
     pub resettable: bool,
+    /// The voltage of the bus while its cause stands, if that is another one.
+    pub bus_voltage: Option<f64>,
     /// What the axis does.
     pub stop: AlarmStop,
 }

@@ -17,6 +17,7 @@ words! {
         SegmentRunning "segment.running" "number of the position segment that started last; 0 after power-on",
         SegmentNext "segment.next" "number of the position segment that comes next in the chain under way; without one, of the one selected",
         ErrorFollowing "error.following" "how far the axis is behind the command of a move, in counts; negative in the negative direction",
+        BusVoltage "bus.voltage" "the voltage of the bus: the `init` of its row, or the `bus_voltage` of an alarm whose cause stands",
         AlarmCode "alarm.code" "the vendor's number of the present alarm, 0 without one",
         UnitInUse "unit.in_use" "the unit address that the drive answers to",
         UnitSwitches "unit.switches" "the DIP switches as they are set",
@@ -33,6 +34,7 @@ impl Quantity {
             | Self::EncoderAngle
             | Self::ErrorFollowing => Dimension::Position,
             Self::CommandRate => Dimension::Frequency,
+            Self::BusVoltage => Dimension::Voltage,
             Self::EncoderTurns => Dimension::Turns,
             Self::ElectricalAngle => Dimension::Angle,
             Self::SpeedActual => Dimension::Speed,

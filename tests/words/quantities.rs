@@ -1,8 +1,11 @@
 //! Every number that a drive computes, in the row of the made-up drive that shows it.
 
-use super::{acme, by_bit, raise, row_showing, running, segment, underway};
+use super::{FIRST, acme, by_bit, raise, row_showing, running, segment, underway};
 use drivemu::bench::DeviceSpec;
+use drivemu::bus::Command;
+use drivemu::event::Trouble;
 use drivemu::model::Shows;
+use drivemu::testkit::Rig;
 use drivemu::words::{AlarmCause, Input, Quantity, Word};
 
 #[test]
@@ -46,6 +49,19 @@ fn each_quantity_shows() {
                 // 262144 counts/s by a gain of 100 1/s, less what a ramp of 1310720 counts/s2 is behind that.
                 2490
             }
+            Quantity::BusVoltage => {
+                let row = row_showing(&rig, &Shows::Quantity(quantity));
+                let mut seen = vec![rig.drive().show(row)];
+                for cause in [AlarmCause::UnderVoltage, AlarmCause::OverVoltage] {
+                    suffers(&mut rig, cause, true);
+                    seen.push(rig.drive().show(row));
+                    suffers(&mut rig, cause, false);
+                }
+                seen.push(rig.drive().show(row));
+                assert_eq!(seen, [480, 300, 905, 480], "in tenths");
+                assert_eq!(rig.drive().quantity(quantity), 48);
+                continue;
+            }
             Quantity::AlarmCode => {
                 raise(&mut rig, AlarmCause::Overload);
                 0x41
@@ -65,4 +81,10 @@ fn each_quantity_shows() {
         let value = rig.drive().model().map.row(row).kind.value(rig.drive().show(row));
         assert_eq!((value, rig.drive().quantity(quantity)), (want, want), "`{}`", quantity.name());
     }
+}
+
+/// Has a cause stand, or go.
+fn suffers(rig: &mut Rig, cause: AlarmCause, on: bool) {
+    let trouble = Trouble::Cause(cause);
+    rig.command(Command::Trouble { drive: FIRST, trouble, on }).expect("an alarm of the model");
 }

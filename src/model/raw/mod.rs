@@ -183,6 +183,7 @@ pub const KEYS: &[&str] = &[
     "base",
     "baud",
     "bits",
+    "bus_voltage",
     "by",
     "chain",
     "choices",

@@ -230,6 +230,8 @@ pub struct RawAlarm {
     /// Does a reset clear it? Otherwise only a power cycle does. Default yes.
     #[serde(default = "yes")]
     pub resettable: bool,
+    /// What `bus.voltage` shows while the cause stands (`180 V`); default: what it shows anyway.
+    pub bus_voltage: Option<String>,
     /// What an axis that moves does when the alarm is raised; default `coast`.
     #[serde(default)]
     pub stop: RawAlarmStop,

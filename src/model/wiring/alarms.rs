@@ -5,7 +5,8 @@ use super::compile::Wirer;
 use super::{AlarmStop, Shows};
 use crate::model::raw::{RawAlarmStop, RawModel};
 use crate::problem::{At, Path, Problem};
-use crate::words::{Action, AlarmCause, Input, Setting, Word};
+use crate::units::{Dimension, Unit};
+use crate::words::{Action, AlarmCause, Input, Quantity, Setting, Word};
 
 impl Wirer<'_> {
     pub(super) fn alarm_history(&mut self, registers: &[String]) {
@@ -15,6 +16,21 @@ impl Wirer<'_> {
             self.show(*row, Shows::PastAlarm(i as u16), &path.index(i), At::Value);
         }
         self.wiring.alarm_history = rows;
+    }
+
+    /// The voltage that `text` says, with its unit, of the alarm at `path`.
+    pub(super) fn bus_voltage(&mut self, text: &str, path: &Path) -> Option<f64> {
+        let (key, quantity) = ("bus_voltage", Quantity::BusVoltage);
+        let shown = Shows::Quantity(quantity);
+        if !self.wiring.shows.iter().flatten().any(|it| *it == shown) {
+            self.unused(key, &format!("no row shows `{}`", quantity.name()), path);
+        }
+        let volts = Unit::parse(text).filter(|it| it.dimension == Dimension::Voltage);
+        if volts.is_none() {
+            let problem = Problem::value(path.key(key), format!("`{text}` is no voltage"));
+            self.problems.push(problem.advise("write a number and its unit: `180 V`"));
+        }
+        volts.map(|it| it.scale)
     }
 
     /// To be called when all the wiring is there.

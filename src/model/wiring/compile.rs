@@ -276,7 +276,9 @@ impl Wirer<'_> {
             }
             let cause = self.word_key::<AlarmCause>(name, "alarm cause", &path);
             let (code, resettable, stop) = (alarm.code, alarm.resettable, stop(alarm.stop));
-            self.wiring.alarms.extend(cause.map(|cause| Alarm { cause, code, resettable, stop }));
+            let bus_voltage = alarm.bus_voltage.as_ref().and_then(|it| self.bus_voltage(it, &path));
+            let alarm = cause.map(|cause| Alarm { cause, code, resettable, bus_voltage, stop });
+            self.wiring.alarms.extend(alarm);
         }
     }
 }
