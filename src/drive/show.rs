@@ -92,9 +92,9 @@ impl Drive {
         alarms.find_map(|it| it.bus_voltage).or_else(nominal).unwrap_or(0.0)
     }
 
-    /// Counts that the axis is behind its command.
+    /// Counts that the encoder, as far as the drive sees it, is behind the command.
     fn deviation(&self) -> i64 {
-        self.motor.deviation(self.now).round() as i64
+        self.deviation_seen().round() as i64
     }
 
     /// Counts from the zero mark of the encoder, below a revolution.

@@ -40,7 +40,7 @@ impl Drive {
 
     /// `outputs` with those that are about positions.
     pub(super) fn with_positions(&self, outputs: Outputs) -> Outputs {
-        let deviation = self.motor.deviation(self.now).abs();
+        let deviation = self.deviation_seen().abs();
         let control = self.motor.control();
         let follows = control == Some(Control::Position);
         let within = |it| follows && self.threshold(it).is_some_and(|window| deviation <= window);
@@ -58,6 +58,18 @@ impl Drive {
             .with(Output::EncoderA, quarter == 1 || quarter == 2)
             .with(Output::EncoderB, quarter >= 2)
             .with(Output::EncoderZ, self.encoder_angle() == 0)
+    }
+
+    /// Counts that the encoder is behind the command: of a frozen one all that it has missed, in position control.
+    pub(super) fn deviation_seen(&self) -> f64 {
+        let deviation = self.motor.deviation(self.now);
+        match self.motor.control() {
+            Some(Control::Position) => {
+                let missed = self.motor.position(self.now).saturating_sub(self.seen_position());
+                deviation + missed as f64
+            }
+            _ => deviation,
+        }
     }
 
     fn is_in_position(&self) -> bool {
