@@ -108,17 +108,17 @@ def test_k_series_jogs_one_axis(emulate):
         master.write(0x0130, 60)
         assert master.read(0x0457) == [0x0090]
         master.write(0x0528, 0x8000)
-        assert master.read(0x0457) == [0x00D0]
+        assert master.read(0x0457) == [0x00F0]
         master.write(0x0528, 0x8002)
         begin = time.monotonic()
-        # S-ST, COIN at its speed, TGON.
-        assert master.read(0x0457) == [0x00F4]
+        # S-ST, COIN at its speed, PS-IN, TGON.
+        assert master.read(0x0457) == [0x00FC]
         # 10000 counts a second, in reverse.
         until("half a revolution", lambda: position() <= -5000)
         assert 0.4 < time.monotonic() - begin < 0.5 + SLACK
         master.write(0x0528, 0x8000)
         stands = position()
-        assert master.read(0x0457) == [0x00D0]
+        assert master.read(0x0457) == [0x00F0]
         assert position() == stands
         master.unit = 1
         assert [master.read(0x0457), position()] == [[0x0090], 0]
