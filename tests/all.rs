@@ -13,6 +13,7 @@ mod ladder;
 mod line;
 #[cfg(feature = "cli")]
 mod live;
+mod no_effect;
 mod problems;
 mod properties;
 mod scenario;

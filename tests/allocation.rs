@@ -62,6 +62,34 @@ fn what_is_stored_allocates_nothing_where_nobody_keeps_it() {
     assert_eq!(counted.count_total, 0);
 }
 
+/// A master that refreshes words of which some bits do nothing, and reads a word that is not enabled.
+#[test]
+fn orders_without_effect_allocate_nothing() {
+    let rig = crate::kit::rig("hcfa-x", &[], &DeviceSpec::default());
+    let mut bus = rig.fresh_bus();
+    let link = bus.open(rig.wire().framing(1.0));
+    bus.advance_to(Instant::from_millis(2000));
+    let requests = [
+        rtu::encode(1, &[6, 0x09, 0x06, 0xFF, 0xFF]),
+        rtu::encode(1, &[6, 0x36, 0x07, 0xFF, 0xFF]),
+        rtu::encode(1, &[6, 0x36, 0x08, 0xFF, 0xFF]),
+        rtu::encode(1, &[6, 0x36, 0x08, 0, 0]),
+        rtu::encode(1, &[6, 0x14, 0x0C, 0, 1]),
+        rtu::encode(1, &[3, 0x36, 0x88, 0, 2]),
+    ];
+    let rounds = |bus: &mut Bus| {
+        for _ in 0..100 {
+            for request in &requests {
+                bus.receive(bus.now(), link, request);
+                while bus.poll_output().is_some() {}
+            }
+        }
+    };
+    rounds(&mut bus);
+    let counted = allocation_counter::measure(|| rounds(&mut bus));
+    assert_eq!(counted.count_total, 0);
+}
+
 fn transact(bus: &mut Bus, link: LinkId, now: Instant, frame: &[u8]) {
     bus.receive(now, link, frame);
     let mut outputs = 0;

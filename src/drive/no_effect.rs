@@ -89,8 +89,12 @@ impl Drive {
         self.changes.push_back(Change::NoEffect { order, why });
     }
 
-    /// Tells of an input signal that rose and has no effect, if it has none.
+    /// Tells of an input signal that rose and has no effect, if it has none. One that acts as a level is looked at
+    /// later.
     pub(super) fn heed(&mut self, input: Input, done: Result<(), Ignored>) {
+        if matches!(self.acts(input), Acts::Level(_)) {
+            return;
+        }
         let told = match done {
             Ok(()) => Told::Acts,
             Err(why) => {

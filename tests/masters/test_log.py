@@ -79,3 +79,37 @@ def test_an_expired_hold_time_is_told(emulate, instrument):
     emulator.logged(r"unit 1 servo on")
     emulator.logged(r"not refreshed for 0\.5 s \(P09\.11\)")
     emulator.logged(r"unit 1 servo off")
+
+
+def test_an_order_without_effect_says_why_once(emulate, instrument):
+    """The commonest beginner's error: the bit is written, and nothing has enabled it."""
+    emulator = emulate("hcfa-x", "--pty")
+    emulator.logged(r"unit 1 ready")
+    master = instrument(emulator.endpoint)
+    for _ in range(5):
+        master.write_register(0x3607, 2, functioncode=6)
+    emulator.logged(r"unit 1 VDI1 bit 1 S_ON has no effect: P09\.05 bit 1 is 0$")
+    for _ in range(5):
+        assert master.read_register(0x3688) == 0
+    emulator.logged(r"unit 1 VDO1 reads 0: P09\.09 is 0$")
+    master.write_register(0x0905, 2, functioncode=6)
+    emulator.logged(r"unit 1 servo on$")
+    emulator.stop()
+    assert emulator.log.count("has no effect") == 1
+    assert emulator.log.count("reads 0") == 1
+
+
+def test_an_order_without_effect_as_json(emulate, instrument):
+    emulator = emulate("yako-closed-loop", "--pty", "--format", "json")
+    master = instrument(emulator.endpoint)
+    master.write_register(0x002D, 0x11, functioncode=6)
+    master.write_register(0x0027, 1, functioncode=6)
+    master.write_register(0x0027, 8, functioncode=6)
+    emulator.logged('"no_order"')
+    emulator.stop()
+    events = [json.loads(line) for line in emulator.log.splitlines()]
+    move, modifier = [event for event in events if event["event"] == "no_effect"]
+    assert (move["order"], move["action"], move["reason"]) == ("action", "move_start", "servo_off")
+    assert move["text"] == "unit 1 move_start has no effect: the servo is off"
+    assert (modifier["order"], modifier["row"], modifier["bit"]) == ("bit", "motion_command", 3)
+    assert (modifier["reason"], modifier["why"]) == ("no_order", "no order is set with it")
