@@ -136,6 +136,7 @@ fn is_condition(input: Input) -> bool {
             | Input::EnableInhibit
             | Input::SegmentReverse
             | Input::ReversePosition
+            | Input::InterruptInhibit
             | Input::Select0
             | Input::Select1
             | Input::Select2

@@ -79,6 +79,11 @@ impl Drive {
         self.interrupt.locked &= !self.inputs.has(Input::InterruptUnlock);
     }
 
+    /// Is there something to unlock: one that has run, or one under way?
+    pub(super) fn can_unlock_interrupt(&self) -> bool {
+        self.interrupt.locked || self.interrupt.stage == Stage::Active
+    }
+
     /// Another motion takes its place.
     pub(super) fn replace_interrupt(&mut self) {
         if std::mem::take(&mut self.interrupt.stage) == Stage::Active {

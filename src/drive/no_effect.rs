@@ -177,6 +177,12 @@ impl Drive {
             Input::SegmentRun if self.velocity_lasts() == Some(Lasts::Edge) => Acts::Edge(start()),
             Input::HomeStart if !self.may_home_by_input() => Acts::Other,
             Input::MoveStart | Input::SegmentStart | Input::HomeStart => Acts::Edge(start()),
+            Input::InterruptStart if self.inputs.has(Input::InterruptInhibit) => {
+                Acts::Edge(Some(Ignored::Inhibited))
+            }
+            Input::InterruptStart => {
+                Acts::Edge(self.motor.may_start(true).err().map(|why| self.root_of(why)))
+            }
             Input::AlarmReset => Acts::Edge(self.servo.may_reset().err()),
             _ if asks_for_run(input) => Acts::Level(self.why_no_run(input)),
             _ => Acts::Other,

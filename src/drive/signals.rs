@@ -46,6 +46,7 @@ impl Drive {
             (Input::AlarmForce, self.servo.alarm().map(|_| Ignored::Alarm)),
             (Input::Stop, self.why_no_stop(false)),
             (Input::QuickStop, self.why_no_stop(true)),
+            (Input::InterruptUnlock, (!self.can_unlock_interrupt()).then_some(Ignored::NotLocked)),
         ];
         for (input, why) in so {
             if let Some(why) = why.filter(|_| risen.has(input)) {

@@ -68,6 +68,8 @@ pub enum Ignored {
     Stopping,
     /// It has run, and nothing has unlocked it since.
     Locked,
+    /// Nothing is locked.
+    NotLocked,
     /// A stop level holds the axis.
     Held,
     /// The axis moves.
