@@ -70,6 +70,11 @@ impl Servo {
         may && (self.wanted || self.latched) && !self.released
     }
 
+    /// Is the power stage on because a command asked for it, whatever levels say?
+    pub fn is_latched_on(&self) -> bool {
+        self.latched && self.is_enabled()
+    }
+
     /// The alarm that stands.
     pub fn alarm(&self) -> Option<Trip> {
         self.alarm

@@ -28,6 +28,9 @@ impl Drive {
         let tell = &mut |change| self.changes.push_back(change);
         self.servo.inhibit(now.has(Input::EnableInhibit), tell);
         self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
+        if before.risen_since(now).has(Input::ServoOn) && self.servo.is_latched_on() {
+            self.ignore(Ordered::InputOff(Input::ServoOn), Ignored::Latched);
+        }
         self.select_velocity();
         self.settle();
         if risen.has(Input::HomeStart) {

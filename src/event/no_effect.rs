@@ -10,6 +10,8 @@ pub enum Ordered {
     Action(Action),
     /// An input signal is active.
     Input(Input),
+    /// An input signal is active no longer.
+    InputOff(Input),
     /// A bit of a row was written.
     Bit {
         /// The row.
@@ -62,6 +64,8 @@ pub enum Ignored {
     AlreadyOff,
     /// A signal keeps the power stage on.
     KeptOn,
+    /// A command keeps the power stage on.
+    Latched,
     /// The axis is at rest.
     AlreadyStopped,
     /// It is slowing down.

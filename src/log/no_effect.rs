@@ -19,6 +19,7 @@ fn ordered(drive: &Drive, order: Ordered) -> String {
     match order {
         Ordered::Action(action) => action.name().into(),
         Ordered::Input(input) => input.name().into(),
+        Ordered::InputOff(input) => format!("{} off", input.name()),
         Ordered::Bit { row, bit, on } => {
             let off = if on { "" } else { " = 0" };
             let bits = &drive.model().map.row(row).bits;
@@ -47,6 +48,7 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
         Ignored::AlreadyOn => "the servo is on already".into(),
         Ignored::AlreadyOff => "the servo is off already".into(),
         Ignored::KeptOn => "an input keeps the servo on".into(),
+        Ignored::Latched => "a command keeps the servo on".into(),
         Ignored::AlreadyStopped => "already stopped".into(),
         Ignored::Stopping => "stopping already".into(),
         Ignored::Locked => "locked since it ran last".into(),
@@ -101,7 +103,10 @@ pub fn fields(drive: &Drive, order: Ordered, why: Ignored) -> serde_json::Value 
     let id = |row: RowId| &drive.model().map.row(row).id;
     let mut fields = match order {
         Ordered::Action(action) => json!({"order": "action", "action": action.name()}),
-        Ordered::Input(input) => json!({"order": "input", "input": input.name()}),
+        Ordered::Input(input) => json!({"order": "input", "input": input.name(), "on": true}),
+        Ordered::InputOff(input) => {
+            json!({"order": "input", "input": input.name(), "on": false})
+        }
         Ordered::Bit { row, bit, on } => {
             json!({"order": "bit", "row": id(row), "bit": bit, "on": on})
         }
@@ -151,6 +156,7 @@ fn name(why: Ignored) -> &'static str {
         Ignored::AlreadyOn => "already_on",
         Ignored::AlreadyOff => "already_off",
         Ignored::KeptOn => "kept_on",
+        Ignored::Latched => "latched",
         Ignored::AlreadyStopped => "already_stopped",
         Ignored::Stopping => "stopping",
         Ignored::Held => "stop_active",
