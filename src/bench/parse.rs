@@ -10,7 +10,7 @@ use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
 use crate::fault;
 use crate::model::{Choices, Model};
-use crate::problem::{At, Path, Problem, Seg, section};
+use crate::problem::{At, Path, Problem, Seg, bounds, section};
 use crate::serial::Settings;
 use crate::time::Instant;
 use serde_yaml::Value;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// What a YAML file is, judged by its keys.
 pub fn kind_of(text: &str) -> &'static str {
-    let file: Value = serde_yaml::from_str(text).unwrap_or_default();
+    let file = section::tree(text).map(|(file, _)| file).unwrap_or_default();
     let of_bench = ["lines", "seed"].iter().any(|key| file.get(key).is_some());
     // Of a model this is a map; somebody forgot the s.
     let nearly = file.get("line").is_some_and(Value::is_sequence);
@@ -89,9 +89,15 @@ impl Reader<'_> {
             }
             None => &[],
         };
+        let most = bounds::count("lines", items.len(), bounds::LINES, &path);
+        let items = if most.is_none() { items } else { &[] };
+        self.problems.extend(most);
         let mut lines: Vec<BenchLine> = Vec::new();
         for (i, value) in items.iter().enumerate() {
             let path = path.index(i);
+            if self.has_too_many(value, &path) {
+                continue;
+            }
             let raw: Option<RawBenchLine> = section::read(value, &path, KEYS, &mut self.problems);
             let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
             if lines.iter().any(|it| it.name == line.name) {
@@ -106,6 +112,16 @@ impl Reader<'_> {
             self.problems.push(Problem::key(path, "a bench needs a line"));
         }
         Bench { seed, lines }
+    }
+
+    /// Has a line more drives or rules than may be?
+    fn has_too_many(&mut self, line: &Value, path: &Path) -> bool {
+        let before = self.problems.len();
+        for (key, most) in [("drives", bounds::DRIVES), ("faults", bounds::FAULTS)] {
+            let len = line.get(key).and_then(Value::as_sequence).map_or(0, Vec::len);
+            self.problems.extend(bounds::count(key, len, most, &path.key(key)));
+        }
+        self.problems.len() > before
     }
 
     fn line(&mut self, index: usize, raw: &RawBenchLine, path: &Path) -> Option<BenchLine> {

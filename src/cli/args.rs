@@ -90,7 +90,7 @@ pub struct RunArgs {
     /// When replies leave: at once, or no earlier than character times and the drive's reply delay allow
     #[arg(long, value_name = "ideal|line", default_value = "ideal")]
     pub pacing: PacingArg,
-    /// Written atomically when every port is open: one JSON object
+    /// Written atomically when every port is open, and removed at the end: one JSON object
     #[arg(long, value_name = "FILE")]
     pub ready_file: Option<PathBuf>,
     /// The event log on stdout: one line per event

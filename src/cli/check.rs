@@ -8,14 +8,14 @@ use drivemu::model::check as check_model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
 use drivemu::scenario::check as check_scenario;
-use drivemu::shell::{FileLibrary, plain};
+use drivemu::shell::{FileLibrary, plain, read_text};
 use std::path::Path;
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let mut bad = 0;
     for file in &args.files {
         let name = file.display().to_string();
-        let text = match std::fs::read_to_string(file) {
+        let text = match read_text(file) {
             Ok(text) => text,
             Err(error) => {
                 complain(&format!("{name}: {}", plain(&error)));
@@ -25,9 +25,9 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
         };
         let (kind, problems) = problems(file, &text);
         match problems.as_slice() {
-            [] => print(&format!("{name}: a valid {kind}\n")),
+            [] => print(&format!("{name}: a valid {kind}\n"))?,
             problems => {
-                print(&render(problems, &name, &text));
+                print(&render(problems, &name, &text))?;
                 bad += 1;
             }
         }

@@ -1,7 +1,7 @@
 //! The command line: flags, what they mean, exit codes.
 //!
-//! 0: a clean end, also by SIGINT and SIGTERM. 1: the run failed, or a step of its scenario. 2: usage, or an invalid file. 3: a port can't be
-//! opened. Machine output goes to stdout, everything else to stderr.
+//! 0: a clean end, also by SIGINT, SIGTERM and SIGHUP. 1: the run failed, a step of its scenario, or an output that could not be written. 2: usage,
+//! or an invalid file. 3: a port can't be opened. Machine output goes to stdout, everything else to stderr.
 
 mod args;
 mod check;
@@ -14,6 +14,8 @@ mod state;
 
 use args::{Args, Command};
 use clap::Parser;
+use drivemu::shell::{plain, said};
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 /// The run failed.
@@ -37,18 +39,40 @@ impl Failure {
 }
 
 pub fn main() -> ExitCode {
-    let result = match Args::parse().command {
+    let result = match Args::try_parse() {
+        Ok(args) => act(args.command),
+        Err(error) => usage(&error),
+    };
+    let code = match result {
+        Ok(()) => 0,
+        Err(Failure { code, text }) => {
+            output::complain(&text);
+            code
+        }
+    };
+    said();
+    ExitCode::from(code)
+}
+
+fn act(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Run(args) => run::run(*args),
         Command::Models => models::models(),
         Command::Show(args) => show::show(&args),
         Command::Check(args) => check::check(&args),
         Command::Schema(args) => schema::schema(&args),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure { code, text }) => {
-            output::complain(&text);
-            ExitCode::from(code)
+    }
+}
+
+/// What clap has to say: help and version on stdout, a mistake on stderr.
+fn usage(error: &clap::Error) -> Result<(), Failure> {
+    let printed = error.print();
+    match printed {
+        _ if error.use_stderr() => Err(Failure::invalid("")),
+        Err(why) if why.kind() != ErrorKind::BrokenPipe => {
+            let text = format!("can't write to stdout: {}", plain(&why));
+            Err(Failure { code: FAILED, text })
         }
+        _ => Ok(()),
     }
 }

@@ -12,10 +12,10 @@ pub fn models() -> Result<(), Failure> {
             Failure { code: FAILED, text }
         })?;
         let default = if model.name == Builtin::default_name() { " (default)" } else { "" };
-        print(&format!("{}{default}\n    {}\n", model.name, model.about));
-        print(&format!("    manual: {}\n", model.manual));
+        print(&format!("{}{default}\n    {}\n", model.name, model.about))?;
+        print(&format!("    manual: {}\n", model.manual))?;
         if !model.products.is_empty() {
-            print(&format!("    stands for: {}\n", model.products.join(", ")));
+            print(&format!("    stands for: {}\n", model.products.join(", ")))?;
         }
         for option in &model.options {
             let choices = option.choices.iter().map(|choice| match *choice == option.default {
@@ -23,7 +23,7 @@ pub fn models() -> Result<(), Failure> {
                 false => choice.clone(),
             });
             let choices = choices.collect::<Vec<_>>().join(" | ");
-            print(&format!("    --set {}={choices}\n        {}\n", option.name, option.about));
+            print(&format!("    --set {}={choices}\n        {}\n", option.name, option.about))?;
         }
     }
     Ok(())

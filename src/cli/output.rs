@@ -1,15 +1,26 @@
-//! Words on stdout and stderr. A reader that went away (`| head`) is no failure.
+//! Words on stdout and stderr.
 
+use super::{FAILED, Failure};
+use drivemu::shell::{plain, say};
 use drivemu::text::lines;
-use std::io::{Write, stderr, stdout};
+use std::io::{ErrorKind, Write, stdout};
 
-/// Prints to stdout.
-pub fn print(text: &str) {
-    let _ = stdout().write_all(lines(text).as_bytes()).and_then(|()| stdout().flush());
+/// Prints to stdout. A reader that went away (`| head`) is no failure.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let printed = stdout().write_all(lines(text).as_bytes()).and_then(|()| stdout().flush());
+    match printed {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure { code: FAILED, text: format!("can't write to stdout: {}", plain(&error)) })
+        }
+        _ => Ok(()),
+    }
 }
 
-/// Says what went wrong, on stderr.
+/// Says what went wrong, on stderr. Where that can't be said, nobody is told.
 pub fn complain(text: &str) {
+    if text.is_empty() {
+        return;
+    }
     let end = if text.ends_with('\n') { "" } else { "\n" };
-    let _ = write!(stderr(), "{}{end}", lines(text));
+    say(&format!("{}{end}", lines(text)));
 }

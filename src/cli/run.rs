@@ -14,8 +14,8 @@ use drivemu::problem::render::render;
 use drivemu::scenario::{self, Verdict};
 use drivemu::serial::{Mode, Parity, Settings};
 use drivemu::shell::{
-    Diagnostics, FileLibrary, Judged, LogFormat, OpenError, Play, RunOptions, diagnose, plain,
-    run as run_bench,
+    Claims, Destination, Diagnostics, Ended, FileLibrary, Judged, LogFormat, Play, RunError,
+    RunOptions, Store, diagnose, is_path, plain, read_text, run as run_bench,
 };
 use drivemu::units::parse_integer;
 use std::collections::BTreeMap;
@@ -27,9 +27,11 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
     if !(1e-3..=1e6).contains(&args.rate) {
         return Err(Failure::invalid("--rate takes a number from 0.001 to 1000000"));
     }
+    let mut claims = flags(&args).map_err(Failure::invalid)?;
     let (store, state) = args.state.as_deref().map(State::open).transpose()?.unzip();
     let mut state = state.unwrap_or_default();
-    let (mut bench, base) = bench(&args, &mut state.saved)?;
+    let (mut bench, base, models) = bench(&args, &mut state.saved)?;
+    lines(&bench, &base, &models, &mut claims).map_err(Failure::invalid)?;
     state.finish()?;
     for spec in &args.fault {
         for line in &mut bench.lines {
@@ -46,35 +48,92 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
             LogFormatArg::Text => LogFormat::Text,
             LogFormatArg::Json => LogFormat::Json,
         },
-        log_file: args.log_file,
-        ready_file: args.ready_file,
+        log_file: destination(args.log_file.as_deref())?,
+        ready_file: destination(args.ready_file.as_deref())?,
         store,
         play,
         base,
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
-    let judged = runtime.block_on(run_bench(bench, options)).map_err(|error| match error {
-        OpenError::Port(_) => Failure { code: NO_PORT, text: error.to_string() },
-        OpenError::File(..) | OpenError::Signals(_) | OpenError::LineEnded(_) => {
-            Failure { code: FAILED, text: error.to_string() }
-        }
-    })?;
-    match failures(&judged).as_slice() {
+    let Ended { judged, errors } = runtime.block_on(run_bench(bench, options));
+    let is_port = |error: &RunError| matches!(error, RunError::Port(_));
+    let code = if errors.iter().any(is_port) { NO_PORT } else { FAILED };
+    let told = errors.iter().map(RunError::to_string).chain(failures(&judged));
+    match told.collect::<Vec<_>>().as_slice() {
         [] => Ok(()),
-        failures => Err(Failure { code: FAILED, text: failures.join("\n") }),
+        told => Err(Failure { code, text: told.join("\n") }),
     }
+}
+
+/// Where an output goes that a flag asks for.
+fn destination(path: Option<&Path>) -> Result<Option<Destination>, Failure> {
+    let find = |path: &Path| {
+        Destination::find(path).map_err(|error| Failure {
+            code: FAILED,
+            text: format!("can't write {}: {}", path.display(), plain(&error)),
+        })
+    };
+    path.map(find).transpose()
+}
+
+/// The files that the flags name: none may be written that is read, and none twice.
+fn flags(args: &RunArgs) -> Result<Claims, String> {
+    let mut claims = Claims::new();
+    let target = args.target.as_deref().unwrap_or(Builtin::default_name());
+    if is_path(target) {
+        claims.reads(target, Path::new(target))?;
+    }
+    let named = |flag: &str, path: &Path| format!("{flag} {}", path.display());
+    if let Some(path) = &args.scenario {
+        claims.reads(named("--scenario", path), path)?;
+    }
+    if let Some(path) = &args.state {
+        claims.owns(named("--state", path), path, Some(&Store::beside(path)))?;
+    }
+    let outputs = [
+        ("--log-file", &args.log_file),
+        ("--ready-file", &args.ready_file),
+        ("--junit", &args.junit),
+    ];
+    for (flag, path) in outputs {
+        if let Some(path) = path {
+            claims.writes(named(flag, path), path)?;
+        }
+    }
+    Ok(claims)
+}
+
+/// The files that a bench names.
+fn lines(
+    bench: &Bench,
+    base: &Path,
+    models: &[PathBuf],
+    claims: &mut Claims,
+) -> Result<(), String> {
+    for model in models {
+        claims.reads(format!("the model {}", model.display()), model)?;
+    }
+    for line in &bench.lines {
+        let name = |what: &str, path: &str| format!("the {what} {path} of line `{}`", line.name);
+        match &line.port {
+            PortSpec::Pty(Some(link)) => claims.links(name("link", link), &base.join(link))?,
+            PortSpec::Serial(path) => claims.owns(name("port", path), Path::new(path), None)?,
+            PortSpec::Pty(None) | PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => {}
+        }
+    }
+    Ok(())
 }
 
 /// The scenario in `file`, for the lines of `bench`.
 fn play(file: &Path, args: &RunArgs, bench: &Bench) -> Result<Play, Failure> {
     let name = file.display().to_string();
-    let text = std::fs::read_to_string(file)
+    let text = read_text(file)
         .map_err(|error| Failure::invalid(format!("can't read {name}: {}", plain(&error))))?;
     let scenario = scenario::parse(&text, &bench.lines)
         .map_err(|problems| Failure::invalid(render(&problems, &name, &text)))?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Play { name, scenario, junit: args.junit.clone() })
+    Ok(Play { name, scenario, junit: destination(args.junit.as_deref())? })
 }
 
 /// One line for each step that failed.
@@ -95,8 +154,8 @@ fn draw_seed() -> u64 {
     rand::random::<u64>() >> 11
 }
 
-/// The bench to run, and what its paths are relative to.
-fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf), Failure> {
+/// The bench to run, what its paths are relative to, and the files of its models.
+fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf, Vec<PathBuf>), Failure> {
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     refuse_swallowed_model(args)?;
     let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
@@ -107,9 +166,10 @@ fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf), Failure>
     if kind_of(&text) == "bench" {
         refuse_flags_of_a_line(args)?;
         let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();
-        let bench = parse_saved(&text, &FileLibrary::new(&base), saved);
+        let library = FileLibrary::new(&base);
+        let bench = parse_saved(&text, &library, saved);
         let bench = bench.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
-        return Ok((bench, base));
+        return Ok((bench, base, library.files()));
     }
     let compile = |choices: &Choices| {
         let model = load(&text, choices);
@@ -119,7 +179,7 @@ fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf), Failure>
     let (choices, set) = wishes(args, &plain)?;
     let model = if choices.is_empty() { plain } else { compile(&choices)? };
     let line = line(args, Arc::new(model), set, saved)?;
-    Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new()))
+    Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new(), Vec::new()))
 }
 
 /// `--pty MODEL` and `--tcp MODEL` take the model for a link or an address.

@@ -12,6 +12,5 @@ pub fn schema(args: &SchemaArgs) -> Result<(), Failure> {
     };
     let text = serde_json::to_string_pretty(&schema);
     let text = text.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
-    print(&format!("{text}\n"));
-    Ok(())
+    print(&format!("{text}\n"))
 }

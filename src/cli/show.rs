@@ -23,13 +23,12 @@ pub fn show(args: &ShowArgs) -> Result<(), Failure> {
     match (args.format, args.row.is_some()) {
         (TableFormat::Json, _) => {
             let rows: Vec<Value> = rows.iter().map(|row| object(&model, *row)).collect();
-            print(&format!("{:#}\n", Value::Array(rows)));
+            print(&format!("{:#}\n", Value::Array(rows)))
         }
         (TableFormat::Markdown, _) => print(&markdown(&model, &rows)),
         (TableFormat::Table, false) => print(&table(&model, &rows)),
         (TableFormat::Table, true) => print(&card(&model, rows[0])),
     }
-    Ok(())
 }
 
 fn find(model: &Model, name: &str) -> Result<RowId, Failure> {

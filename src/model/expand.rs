@@ -1,7 +1,7 @@
 //! Folded rows unfolded: repeats and fills become one list of rows, each with its path in the file.
 
 use super::raw::{KEYS, RawFill, RawRepeat, RawRow, RawSim, RawType};
-use crate::problem::{Path, Problem, section};
+use crate::problem::{Path, Problem, bounds, section};
 use serde_yaml::Value;
 use std::collections::BTreeMap;
 
@@ -52,8 +52,13 @@ fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &
         return problems.push(Problem::value(path.key("stride"), what));
     }
     let copies = usize::from(last - first) + 1;
+    let size = repeat.registers.values().map(text_size).sum::<usize>() * copies;
     if copies * repeat.registers.len() + entries.len() > ROWS_MAX {
         return problems.push(Problem::value(path.key("n"), "more rows than a model can have"));
+    }
+    if size > bounds::EXPANDED {
+        let what = bounds::expanded();
+        return problems.push(Problem::value(path.key("n"), what));
     }
     for (key, row) in &repeat.registers {
         let path = path.key("registers").key(key);
@@ -78,6 +83,14 @@ fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &
     }
 }
 
+/// Bytes of text that each copy of a row has.
+fn text_size(row: &RawRow) -> usize {
+    let texts = [&row.zh, &row.note, &row.assumed, &row.unit].into_iter().flatten();
+    let meanings = row.values.values().chain(row.bits.values());
+    let texts = texts.chain(meanings).chain([&row.name, &row.see]);
+    texts.map(String::len).sum()
+}
+
 fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Vec<Problem>) {
     let [first, last] = area.span;
     if first > last {
@@ -86,6 +99,12 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
     }
     if usize::from(last - first) + entries.len() > ROWS_MAX {
         return problems.push(Problem::value(path.key("span"), "more rows than a model can have"));
+    }
+    let texts = [Some(&area.name), area.zh.as_ref(), Some(&area.see), area.assumed.as_ref()];
+    let size = texts.into_iter().flatten().map(String::len).sum::<usize>();
+    if size * (usize::from(last - first) + 1) > bounds::EXPANDED {
+        let what = bounds::expanded();
+        return problems.push(Problem::value(path.key("span"), what));
     }
     if !area.id.contains("{n") {
         let what = "every address would get the same name";

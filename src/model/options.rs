@@ -1,7 +1,7 @@
 //! Options: one of several readings, chosen by name, as a fragment laid over the file.
 
 use super::raw::RawOption;
-use crate::problem::{Path, Problem, suggest};
+use crate::problem::{Path, Problem, bounds, suggest};
 use serde_yaml::Value;
 use std::collections::BTreeMap;
 
@@ -41,6 +41,9 @@ pub(super) fn choose(
     wishes: &BTreeMap<String, String>,
     problems: &mut Vec<Problem>,
 ) -> BTreeMap<String, String> {
+    let choices = options.values().map(|option| option.choices.len()).sum();
+    let path = Path::root().key("options");
+    problems.extend(bounds::count("choices", choices, bounds::CHOICES, &path));
     let mut chosen = BTreeMap::new();
     for (name, option) in options {
         let path = Path::root().key("options").key(name);

@@ -4,6 +4,7 @@
 //! path into line, column and caret, by walking the same text once more with a parser that keeps
 //! marks ([`place`]). So checks work the same on a parsed tree, on a fragment laid over it and in tests.
 
+pub mod bounds;
 mod path;
 pub mod place;
 pub mod render;

@@ -7,7 +7,7 @@ mod strip;
 
 use super::place::Places;
 use super::place::lines::Lines;
-use super::{Mark, Path, Problem, Seg};
+use super::{Mark, Path, Problem, Seg, bounds};
 use crate::text::is_control;
 use std::fmt::Write as _;
 
@@ -18,7 +18,9 @@ use std::fmt::Write as _;
 pub fn render(problems: &[Problem], file: &str, text: &str) -> String {
     let (places, _) = Places::parse(text);
     let lines = Lines::new(text);
-    let mut placed: Vec<_> = problems.iter().map(|p| (locate(p, &places), p)).collect();
+    // To look for the places of many takes more time than anybody has who reads them.
+    let (told, more) = problems.split_at(problems.len().min(bounds::TOLD));
+    let mut placed: Vec<_> = told.iter().map(|p| (locate(p, &places), p)).collect();
     placed.sort_by_key(|(mark, _)| (mark.is_none(), *mark));
     let mut out = String::new();
     for (mark, problem) in placed {
@@ -26,6 +28,9 @@ pub fn render(problems: &[Problem], file: &str, text: &str) -> String {
             Some((mark, line)) => with_line(&mut out, file, problem, mark, line),
             None => push_line(&mut out, &format!("{file}: {problem}")),
         }
+    }
+    if !more.is_empty() {
+        push_line(&mut out, &format!("{file}: and {} more problems", more.len()));
     }
     out
 }

@@ -10,7 +10,7 @@ use super::{Part, Scenario};
 use crate::bench::BenchLine;
 use crate::bus::Command;
 use crate::event::DriveId;
-use crate::problem::{Path, Problem, section, suggest};
+use crate::problem::{Path, Problem, bounds, section, suggest};
 use crate::time::{Duration, Instant, parse_duration};
 use crate::words::{Output, Quantity, Word};
 use serde::Deserialize;
@@ -78,6 +78,9 @@ impl Reader<'_> {
         if items.is_empty() && self.problems.is_empty() {
             self.problems.push(Problem::key(path.clone(), "a scenario needs a step"));
         }
+        let most = bounds::count("steps", items.len(), bounds::STEPS, &path);
+        let items = if most.is_none() { items } else { Vec::new() };
+        self.problems.extend(most);
         let count = self.sites.as_ref().map_or(1, Vec::len);
         let limit = limit.map(|limit| Instant::ZERO + limit);
         let mut parts = vec![Part { steps: Vec::new(), limit }; count];
@@ -119,6 +122,14 @@ impl Reader<'_> {
 
     fn step(&mut self, raw: &RawStep, line: Option<usize>, path: &Path) -> Option<Step> {
         let drive = self.drive(line, raw.unit, DriveId(0), &path.key("unit"));
+        let lengths =
+            [("do", "orders", raw.orders.len()), ("expect", "conditions", raw.expect.len())];
+        for (key, what, len) in lengths {
+            if let Some(problem) = bounds::count(what, len, bounds::OF_A_STEP, &path.key(key)) {
+                self.problems.push(problem);
+                return None;
+            }
+        }
         if raw.orders.is_empty() && raw.expect.is_empty() && raw.repeat.is_none() {
             self.refuse(
                 path,

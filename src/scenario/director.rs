@@ -93,9 +93,17 @@ impl Director {
 
     /// The run is over at `now`: what has not come has failed.
     pub fn finish(&mut self, now: Instant) {
+        self.end(now, None);
+    }
+
+    /// The same, and why it is over.
+    pub fn end(&mut self, now: Instant, why: Option<&str>) {
         while !self.is_over() {
-            let why = self.unsettled();
-            self.judge(now, Some(why.into()));
+            let failure = match why {
+                Some(why) => format!("{}: {why}", self.unsettled()),
+                None => self.unsettled().to_owned(),
+            };
+            self.judge(now, Some(failure));
         }
         self.due = None;
     }

@@ -6,7 +6,7 @@ use crate::bus::{Bus, Command};
 use crate::event::DriveId;
 use crate::fault::{Habits, Weather};
 use crate::model::Model;
-use crate::problem::{Problem, suggest};
+use crate::problem::{Path, Problem, bounds, suggest};
 
 /// One line.
 pub(super) struct Site<'a> {
@@ -58,6 +58,11 @@ impl<'a> Site<'a> {
             };
             first.map_or(NoOrder { what: String::new(), advice: None }, told)
         })?;
+        if let Some(most) =
+            bounds::count("rules", self.rules.len() + rules.len(), bounds::FAULTS, &Path::root())
+        {
+            return Err(NoOrder { what: most.what, advice: None });
+        }
         self.rules.extend(rules.iter().map(|rule| rule.name.clone()));
         let mut commands: Vec<_> = rules.into_iter().map(Command::AddFault).collect();
         if !habits.is_empty() {

@@ -1,23 +1,21 @@
-//! Writes the event log to stdout and to a file, from a thread of its own.
+//! Writes the event log to stdout and to a file, each behind a queue of its own.
 //!
-//! A pipe that nobody reads must not stop a drive: lines queue up to a limit, then they are dropped and
-//! counted, and the log says how many when it can write again.
+//! A pipe that nobody reads must not stop a drive: what it is too slow for is lost and counted, and the log says how
+//! much when it can write again. An output that fails ends there; that is told at once, and again when the run ends.
 
+use super::destination::Destination;
+use super::library::plain;
+use super::sink::Sink;
 use crate::bus::Bus;
 use crate::event::Event;
 use crate::log::{json, text};
 use crate::text::one_line;
-use crate::time::Duration;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-
-/// How long the end of a run waits for a slow reader to take the last lines.
-const LAST_LINES: Duration = Duration::from_secs(1);
+use tracing::error;
 
 /// Lines that may wait for a slow reader.
-const QUEUE: usize = 65_536;
+const ROOM: usize = 65_536;
 
 /// What the log looks like on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,20 +29,17 @@ pub enum LogFormat {
 /// The event log of a run.
 #[derive(Debug)]
 pub struct Logger {
-    /// How it looks on stdout; `None` for not at all.
-    format: Option<LogFormat>,
+    stdout: Option<Output>,
+    file: Option<Output>,
     /// Several lines: each event says on which it was.
     names: bool,
-    to_file: bool,
-    queue: Option<SyncSender<Entry>>,
-    dropped: u64,
-    /// Ends when the writer has written everything.
-    written: Receiver<()>,
 }
 
-struct Entry {
-    stdout: Option<String>,
-    file: Option<String>,
+#[derive(Debug)]
+struct Output {
+    name: String,
+    format: LogFormat,
+    sink: Sink,
 }
 
 impl Logger {
@@ -53,99 +48,112 @@ impl Logger {
     ///
     /// # Errors
     /// If the file can't be created.
-    pub fn start(format: Option<LogFormat>, names: bool, file: Option<&Path>) -> io::Result<Self> {
-        let file = file.map(File::create).transpose()?;
-        let (queue, entries) = sync_channel(QUEUE);
-        let to_file = file.is_some();
-        let (writing, written) = sync_channel(0);
-        std::thread::Builder::new().name("log".into()).spawn(move || {
-            write(&entries, file.map(BufWriter::new));
-            drop(writing);
-        })?;
-        Ok(Self { format, names, to_file, queue: Some(queue), dropped: 0, written })
+    pub fn start(
+        format: Option<LogFormat>,
+        names: bool,
+        file: Option<&Destination>,
+    ) -> io::Result<Self> {
+        let file = file.map(|file| {
+            let (name, format) = (file.path().display().to_string(), LogFormat::Json);
+            Ok::<_, io::Error>(Output { name, format, sink: file.stream(ROOM)? })
+        });
+        let file = file.transpose()?;
+        let stdout = format.map(|format| {
+            let open = || Ok(Box::new(Stdout) as Box<dyn Write>);
+            let sink = Sink::start("stdout", ROOM, Box::new(open))?;
+            Ok::<_, io::Error>(Output { name: "stdout".into(), format, sink })
+        });
+        Ok(Self { stdout: stdout.transpose()?, file, names })
+    }
+
+    /// Starts a log in the file at `path` alone, as JSON.
+    ///
+    /// # Errors
+    /// If the file can't be created.
+    pub fn to_file(path: &Path) -> io::Result<Self> {
+        Self::start(None, false, Some(&Destination::find(path)?))
     }
 
     /// Logs an event of the line called `name`.
     pub fn log(&mut self, event: &Event, name: &str, bus: &Bus) {
         let object = || json::object(event, name, bus).to_string();
-        let file = self.to_file.then(object);
-        let stdout = self.format.map(|format| match format {
-            LogFormat::Json => file.clone().unwrap_or_else(object),
-            LogFormat::Text => self.text(event, name, bus),
-        });
-        self.send(Entry { stdout, file });
-    }
-
-    fn text(&self, event: &Event, name: &str, bus: &Bus) -> String {
-        let line = text::line(event, bus);
-        match (self.names, line.split_once(' ')) {
-            (true, Some((time, what))) => format!("{time} {} {what}", one_line(name)),
-            _ => line,
-        }
-    }
-
-    fn send(&mut self, entry: Entry) {
-        let Some(queue) = &self.queue else { return };
-        if self.dropped > 0 {
-            let lost =
-                format!("{} lines of the log were lost: its reader is too slow", self.dropped);
-            let stdout = self.format.map(|format| match format {
-                LogFormat::Text => lost.clone(),
-                LogFormat::Json => lost_object(&lost, self.dropped),
+        let for_file = self.file.is_some().then(object);
+        if let Some(stdout) = &mut self.stdout {
+            stdout.put(match stdout.format {
+                LogFormat::Json => for_file.clone().unwrap_or_else(object),
+                LogFormat::Text => for_people(event, self.names.then_some(name), bus),
             });
-            let file = self.to_file.then(|| lost_object(&lost, self.dropped));
-            if queue.try_send(Entry { stdout, file }).is_err() {
-                self.dropped += 1;
-                return;
-            }
-            self.dropped = 0;
         }
-        match queue.try_send(entry) {
-            Ok(()) => {}
-            Err(TrySendError::Full(_)) => self.dropped += 1,
-            Err(TrySendError::Disconnected(_)) => self.queue = None,
+        if let (Some(file), Some(line)) = (&mut self.file, for_file) {
+            file.put(line);
         }
+    }
+
+    /// Writes what is left. A reader that stopped reading does not hold up the end of a run for long.
+    ///
+    /// # Errors
+    /// Each output that could not be written, with its name. That a reader of stdout has gone or is too slow is none.
+    pub fn finish(&mut self) -> Vec<(String, io::Error)> {
+        let ended = |output: Output| Some((output.name, output.sink.finish().err()?));
+        let stdout = self.stdout.take().and_then(ended);
+        let stdout = stdout.filter(|(_, error)| error.kind() != ErrorKind::TimedOut);
+        stdout.into_iter().chain(self.file.take().and_then(ended)).collect()
     }
 }
 
 impl Drop for Logger {
-    /// Writes what is left. A reader that stopped reading must not hold up the end of the run for long.
     fn drop(&mut self) {
-        self.queue = None;
-        // Nothing is ever sent: this waits for the writer to end.
-        let _ = self.written.recv_timeout(LAST_LINES);
+        // Whoever wants to know has asked.
+        self.finish();
     }
 }
 
-fn lost_object(text: &str, count: u64) -> String {
-    serde_json::json!({"event": "log_lost", "lines": count, "text": text}).to_string()
+/// The text of an event, on the line called `name` if there are several.
+fn for_people(event: &Event, name: Option<&str>, bus: &Bus) -> String {
+    let line = text::line(event, bus);
+    match (name, line.split_once(' ')) {
+        (Some(name), Some((time, what))) => format!("{time} {} {what}", one_line(name)),
+        _ => line,
+    }
 }
 
-fn write(entries: &Receiver<Entry>, mut file: Option<BufWriter<File>>) {
-    let mut stdout = Some(BufWriter::new(io::stdout()));
-    while let Ok(entry) = entries.recv() {
-        let mut next = Some(entry);
-        // One flush for all that has queued up meanwhile.
-        while let Some(entry) = next {
-            put(&mut stdout, entry.stdout);
-            put(&mut file, entry.file);
-            next = entries.try_recv().ok();
+impl Output {
+    fn put(&mut self, mut line: String) {
+        let lost = self.sink.lost();
+        if lost > 0 {
+            let text = format!("{lost} lines of the log were lost: its reader is too slow");
+            let text = match self.format {
+                LogFormat::Text => text,
+                LogFormat::Json => {
+                    serde_json::json!({"event": "log_lost", "lines": lost, "text": text})
+                        .to_string()
+                }
+            };
+            self.sink.tell_lost(text + "\n");
         }
-        flush(&mut stdout);
-        flush(&mut file);
+        line.push('\n');
+        self.sink.put(line);
+        if let Some(why) = self.sink.has_failed() {
+            error!("can't write the log to {}: {}; it ends there", self.name, plain(why));
+        }
     }
 }
 
-/// Writes a line. A reader that went away (`| head`) ends this output, not the drive.
-fn put<W: Write>(output: &mut Option<W>, line: Option<String>) {
-    let (Some(writer), Some(line)) = (output.as_mut(), line) else { return };
-    if writeln!(writer, "{line}").is_err() {
-        *output = None;
-    }
-}
+/// Stdout, whose reader may go away (`| head`): then nobody wants the rest.
+struct Stdout;
 
-fn flush<W: Write>(output: &mut Option<W>) {
-    if output.as_mut().is_some_and(|writer| writer.flush().is_err()) {
-        *output = None;
+impl Write for Stdout {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match io::stdout().write(bytes) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match io::stdout().flush() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
     }
 }

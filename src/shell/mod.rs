@@ -3,23 +3,31 @@
 //! One task owns one [`crate::bus::Bus`]: it reads its port, sleeps until the bus wants to be woken, and sends what
 //! the bus gives it. [`run`](fn@run) opens all lines of a bench, says that it is ready, and ends on a signal.
 
+mod claims;
 mod clock;
+mod destination;
 mod diagnostics;
+mod input;
 mod library;
 mod logger;
+mod outputs;
 pub mod port;
 mod ready;
 mod run;
 mod serve;
+mod sink;
 mod stage;
 mod stop;
 mod store;
 
+pub use claims::Claims;
 pub use clock::Clock;
-pub use diagnostics::{Diagnostics, diagnose};
-pub use library::{FileLibrary, plain};
+pub use destination::Destination;
+pub use diagnostics::{Diagnostics, diagnose, said, say};
+pub use input::read_text;
+pub use library::{FileLibrary, is_path, plain};
 pub use logger::{LogFormat, Logger};
-pub use run::{Judged, OpenError, Play, RunOptions, run};
+pub use run::{Ended, Judged, Play, RunError, RunOptions, run};
 pub use serve::{Frames, Reopen, Served, serve_stream, serve_tty};
 pub use stage::Stage;
 pub use store::Store;

@@ -1,9 +1,6 @@
 //! The ready file: one JSON object, there whole or not at all.
 
-use super::store::folder;
 use serde::Serialize;
-use std::io::{self, Write};
-use std::path::Path;
 
 /// What the ready file says.
 #[derive(Debug, Clone, Serialize)]
@@ -46,27 +43,4 @@ pub struct Unit {
     pub unit: u8,
     /// The model that answers to it.
     pub model: String,
-}
-
-/// Writes `ready` to `path`.
-///
-/// # Errors
-/// What the file system says.
-pub fn write(path: &Path, ready: &Ready) -> io::Result<()> {
-    let text = serde_json::to_string(ready)?;
-    write_whole(path, &format!("{text}\n"))
-}
-
-/// Writes `text` to `path`: beside it first, then moved over it, so that nobody reads half of it.
-///
-/// # Errors
-/// What the file system says.
-pub fn write_whole(path: &Path, text: &str) -> io::Result<()> {
-    let folder = folder(path);
-    // As readable as any other file that a program makes.
-    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o644);
-    let mut file = tempfile::Builder::new().permissions(mode).tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.persist(path).map_err(|failed| failed.error)?;
-    Ok(())
 }

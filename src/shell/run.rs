@@ -1,10 +1,12 @@
 //! Runs a bench: opens all its ports, says so, serves them until somebody ends it.
 
 use super::clock::Clock;
+use super::destination::Destination;
 use super::library::plain;
 use super::logger::{LogFormat, Logger};
+use super::outputs::{Outputs, report};
 use super::port::{Listener, Pty, Serial, Tty};
-use super::ready::{self, Endpoint, Ready, Unit};
+use super::ready::{Endpoint, Ready, Unit};
 use super::serve::{Frames, Reopen, Served, held, serve_tcp, serve_tty};
 use super::stage::Stage;
 use super::stop::Stop;
@@ -32,9 +34,9 @@ pub struct RunOptions {
     /// What the log on stdout looks like.
     pub format: LogFormat,
     /// The log as JSON lines.
-    pub log_file: Option<PathBuf>,
-    /// Written when every port is open.
-    pub ready_file: Option<PathBuf>,
+    pub log_file: Option<Destination>,
+    /// Written when every port is open, and gone when they are closed.
+    pub ready_file: Option<Destination>,
     /// Where drives keep what they store.
     pub store: Option<Store>,
     /// What happens to the lines, and what should come of it.
@@ -51,20 +53,20 @@ pub struct Play {
     /// Its steps.
     pub scenario: Scenario,
     /// The report is written here when the run is over.
-    pub junit: Option<PathBuf>,
+    pub junit: Option<Destination>,
 }
 
 /// What became of the steps of each line.
 pub type Judged = Vec<(String, Vec<Verdict>)>;
 
-/// Why a run did not begin.
+/// What went wrong with a run.
 #[derive(Debug, Error)]
-pub enum OpenError {
+pub enum RunError {
     /// A port can't be opened.
     #[error("{0}")]
     Port(String),
-    /// A file of the run can't be written.
-    #[error("can't write {0}: {error}", error = plain(.1))]
+    /// A file of the run can't be written, or not all of it.
+    #[error("can't write {}: {error}", .0.display(), error = plain(.1))]
     File(PathBuf, io::Error),
     /// A line has ended by itself, which none does unless this program is wrong.
     #[error("a line has ended by itself: {}", .0.as_deref().unwrap_or("no reason"))]
@@ -74,104 +76,102 @@ pub enum OpenError {
     Signals(io::Error),
 }
 
-/// Removes the ready file of an earlier run, which would speak of ports that are gone.
-fn forget(path: &Path) -> io::Result<()> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
-/// A file of the run was written, or the run has failed.
-fn written(path: &Path, result: io::Result<()>) -> Result<(), OpenError> {
-    result.map_err(|error| OpenError::File(path.to_owned(), error))
-}
-
-/// Has the state file written, if there is one.
-fn saved(
-    store: Option<&Arc<Mutex<Store>>>,
-    save: fn(&mut Store) -> io::Result<()>,
-) -> Result<(), OpenError> {
-    let Some(mut store) = store.map(|it| held(it)) else { return Ok(()) };
-    let result = save(&mut store);
-    written(store.path(), result)
+/// How a run has ended.
+#[derive(Debug, Default)]
+pub struct Ended {
+    /// What became of the steps of a scenario that is a test.
+    pub judged: Judged,
+    /// What went wrong: with the run, or with what it had to write.
+    pub errors: Vec<RunError>,
 }
 
 type Task = Pin<Box<dyn Future<Output = ()>>>;
 
-/// Runs `bench` until a signal ends it, or the last step of a scenario that is a test. Gives back what became of the
-/// steps.
-///
-/// # Errors
-/// If a port or a file can't be opened; then nothing was served.
-pub async fn run(bench: Bench, mut options: RunOptions) -> Result<Judged, OpenError> {
-    // Before anybody can learn that the run has begun.
-    let mut stop = Stop::listen().map_err(OpenError::Signals)?;
-    if let Some(path) = &options.ready_file {
-        written(path, forget(path))?;
-    }
-    let names = bench.lines.len() > 1;
-    let logger = Logger::start(Some(options.format), names, options.log_file.as_deref());
-    let logger = logger
-        .map_err(|error| OpenError::File(options.log_file.clone().unwrap_or_default(), error))?;
-    let log = Arc::new(Mutex::new(logger));
-    let store = options.store.take().map(|store| Arc::new(Mutex::new(store)));
-    let clock = Clock::start(options.rate);
+/// Runs `bench` until a signal ends it, or the last step of a scenario that is a test. Whatever ends it, the report on
+/// the scenario is written.
+pub async fn run(bench: Bench, mut options: RunOptions) -> Ended {
     let over = Arc::new(Notify::new());
-    let play = options.play.take();
-    let is_test = play.as_ref().is_some_and(|play| play.scenario.is_test());
-    let directors = play.iter().flat_map(|play| play.scenario.clone().directors());
+    let scenario = options.play.as_ref().map(|play| play.scenario.clone());
+    let is_test = scenario.as_ref().is_some_and(Scenario::is_test);
+    let directors = scenario.into_iter().flat_map(Scenario::directors);
     let stages: Vec<_> = directors.map(|it| Stage::new(it, over.clone())).collect();
+    let clock = Clock::start(options.rate);
+    let (end, mut errors) = match Outputs::open(&mut options, bench.lines.len() > 1) {
+        Ok(mut outputs) => {
+            let over = is_test.then_some(&*over);
+            let end = serve(&bench, clock, &stages, over, &mut outputs, &options).await;
+            (end, outputs.end())
+        }
+        Err(error) => (Err(error), Vec::new()),
+    };
+    let why = end.as_ref().map_or_else(RunError::to_string, |why| (*why).to_owned());
+    let now = clock.now();
+    let verdicts = stages.iter().map(|stage| stage.verdicts(now, &why));
+    let names = bench.lines.iter().map(|line| line.name.clone());
+    let mut judged = names.zip(verdicts).collect::<Judged>();
+    if let Some(play) = &options.play
+        && let Some(destination) = &play.junit
+    {
+        errors.extend(report(destination, &junit(&play.name, &judged)).err());
+    }
+    if !is_test || end.is_err() {
+        judged.clear();
+    }
+    match end {
+        Ok(why) => info!("{why}: ended"),
+        Err(error) => errors.insert(0, error),
+    }
+    Ended { judged, errors }
+}
+
+/// Opens all ports, says so, and serves them until something ends that; says what did. `over` is told of when the
+/// steps of a test are.
+async fn serve(
+    bench: &Bench,
+    clock: Clock,
+    stages: &[Stage],
+    over: Option<&Notify>,
+    outputs: &mut Outputs,
+    options: &RunOptions,
+) -> Result<&'static str, RunError> {
+    // Before anybody can learn that the run has begun.
+    let mut stop = Stop::listen().map_err(RunError::Signals)?;
     let (mut tasks, mut endpoints) = (Vec::new(), Vec::new());
     for (i, line) in bench.lines.iter().enumerate() {
-        let shared = (&log, store.as_ref(), stages.get(i).cloned());
-        let (task, endpoint) = open(line, clock, shared, &options)?;
+        let shared = (&outputs.log, outputs.store.as_ref(), stages.get(i).cloned());
+        let (task, endpoint) = open(line, clock, shared, options)?;
         tasks.push(task);
         endpoints.push(endpoint);
     }
     // Whoever is told that the run is ready may look into it.
-    saved(store.as_ref(), Store::save)?;
+    outputs.save()?;
     info!("seed {}", options.seed);
     bench.lines.iter().zip(&endpoints).for_each(|(line, endpoint)| introduce(line, endpoint));
-    if let Some(path) = &options.ready_file {
-        let ready = Ready { seed: options.seed, endpoints };
-        written(path, ready::write(path, &ready))?;
-    }
+    outputs.ready(&Ready { seed: options.seed, endpoints })?;
     let mut served = tokio::task::JoinSet::new();
     let local = tokio::task::LocalSet::new();
     tasks.into_iter().for_each(|task| {
         served.spawn_local_on(task, &local);
     });
-    let why = local.run_until(async {
+    let end = local.run_until(async {
         tokio::select! {
             why = stop.requested() => Ok(why),
-            Some(ended) = served.join_next() => Err(ended),
-            () = all_over(&stages, &over), if is_test => Ok("the scenario is over"),
+            Some(ended) = served.join_next() => {
+                Err(RunError::LineEnded(ended.err().map(|error| error.to_string())))
+            }
+            () = all_over(stages, over) => Ok("the scenario is over"),
         }
     });
-    let why = why.await;
+    let end = end.await;
     // Ports close here: links are removed, clients see the end.
     served.abort_all();
     local.await;
-    saved(store.as_ref(), Store::finish)?;
-    let now = clock.now();
-    let verdicts = stages.iter().map(|stage| stage.verdicts(now));
-    let names = bench.lines.iter().map(|line| line.name.clone());
-    let judged = names.zip(verdicts).collect::<Judged>();
-    if let Some((play, path)) = play.as_ref().and_then(|it| Some((it, it.junit.as_ref()?))) {
-        written(path, ready::write_whole(path, &junit(&play.name, &judged)))?;
-    }
-    match why {
-        Ok(why) => {
-            info!("{why}: ended");
-            Ok(if is_test { judged } else { Vec::new() })
-        }
-        Err(ended) => Err(OpenError::LineEnded(ended.err().map(|error| error.to_string()))),
-    }
+    end
 }
 
-/// Waits for the last step of all lines.
-async fn all_over(stages: &[Stage], over: &Notify) {
+/// Waits for the last step of all lines; for ever without one to wait for.
+async fn all_over(stages: &[Stage], over: Option<&Notify>) {
+    let Some(over) = over else { return std::future::pending().await };
     while !stages.iter().all(Stage::is_over) {
         over.notified().await;
     }
@@ -185,7 +185,7 @@ fn open(
     clock: Clock,
     (log, store, stage): Shared<'_>,
     options: &RunOptions,
-) -> Result<(Task, Endpoint), OpenError> {
+) -> Result<(Task, Endpoint), RunError> {
     let (bus, name) = (line.bus(options.seed), line.name.clone());
     let (wire, settings) = (line.wire, line.wire.mode.settings);
     let mut endpoint = endpoint(line, &bus);
@@ -194,7 +194,7 @@ fn open(
     }
     let (log, store) = (Some(log.clone()), store.cloned());
     let served = |frames| Served { name, bus, clock, frames, log, store, stage };
-    let refused = |error: io::Error| OpenError::Port(error.to_string());
+    let refused = |error: io::Error| RunError::Port(error.to_string());
     let task: Task = match &line.port {
         PortSpec::Pty(link) => {
             let link = link.as_ref().map(|link| options.base.join(link));
@@ -242,9 +242,9 @@ fn open_serial(path: &str, Settings { baud, format }: Settings) -> io::Result<Se
     Serial::open(path, baud, format.data_bits, format.parity.letter(), format.stop_bits)
 }
 
-fn local(listener: &Listener, asked: &str) -> Result<String, OpenError> {
+fn local(listener: &Listener, asked: &str) -> Result<String, RunError> {
     let addr = listener.local_addr();
-    let addr = addr.map_err(|error| OpenError::Port(format!("{asked}: {error}")))?;
+    let addr = addr.map_err(|error| RunError::Port(format!("{asked}: {error}")))?;
     Ok(addr.to_string())
 }
 

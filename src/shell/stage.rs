@@ -40,10 +40,10 @@ impl Stage {
         held(&self.director).is_over()
     }
 
-    /// What became of all steps, now that the run is over.
-    pub fn verdicts(&self, now: Instant) -> Vec<Verdict> {
+    /// What became of all steps, now that the run is over, and why it is.
+    pub fn verdicts(&self, now: Instant, why: &str) -> Vec<Verdict> {
         let mut director = held(&self.director);
-        director.finish(now);
+        director.end(now, Some(why));
         director.verdicts().to_vec()
     }
 

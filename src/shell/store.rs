@@ -3,6 +3,8 @@
 //! Beside the file first, then moved over it, and on the disk before anybody goes on: whatever ends the
 //! process, the file is the old one or the new one. A disk that fails does not stop the drives.
 
+use super::destination::{FileId, folder, places};
+use super::input;
 use super::library::plain;
 use crate::bench::StateFile;
 use crate::bus::Bus;
@@ -34,16 +36,25 @@ impl Store {
     /// # Errors
     /// If it can't be read, or another run has it.
     pub fn open(path: &Path) -> io::Result<(Self, Option<String>)> {
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let held = match File::open(&target) {
-            Ok(file) => Some(file),
+        let target = places(path).ok().and_then(|mut it| it.pop());
+        let target = target.unwrap_or_else(|| path.to_owned());
+        // To open a FIFO would wait for its writer.
+        let held = match fs::metadata(&target) {
+            Ok(it) if it.is_file() => Some(File::open(&target)?),
+            Ok(it) if it.is_dir() => return Err(ErrorKind::IsADirectory.into()),
+            Ok(_) => return Err(io::Error::other("this is no file")),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
         held.as_ref().map(lock).transpose()?;
-        let text = held.as_ref().map(io::read_to_string).transpose()?;
+        let text = held.as_ref().map(input::read).transpose()?;
         let (path, state) = (path.to_owned(), StateFile::default());
         Ok((Self { path, target, held, state, behind: false }, text))
+    }
+
+    /// Where the next state is written before it is moved over the file at `path`.
+    pub fn beside(path: &Path) -> PathBuf {
+        beside(&places(path).ok().and_then(|mut it| it.pop()).unwrap_or_else(|| path.to_owned()))
     }
 
     /// As the user calls it.
@@ -85,6 +96,7 @@ impl Store {
             file.set_permissions(old.permissions())?;
         }
         lock(&file)?;
+        self.still_ours(&file, &beside)?;
         file.set_len(0)?;
         file.write_all(self.state.text().as_bytes())?;
         file.sync_all()?;
@@ -94,6 +106,21 @@ impl Store {
         File::open(folder(&self.target))?.sync_all()?;
         self.behind = false;
         Ok(())
+    }
+
+    /// Makes sure, with `new` at `beside` locked, that no other run has taken the file: one that was started after
+    /// somebody had removed it found nothing that was locked. Whoever puts a file in place has to lock `beside` first.
+    fn still_ours(&self, new: &File, beside: &Path) -> io::Result<()> {
+        if FileId::of(beside) != Some(FileId::from(&new.metadata()?)) {
+            return Err(io::Error::other("another run has put its own in place"));
+        }
+        let Ok(there) = File::open(&self.target) else { return Ok(()) };
+        let id = |file: &File| file.metadata().map(|it| FileId::from(&it));
+        match &self.held {
+            Some(held) if id(held)? == id(&there)? => Ok(()),
+            // Somebody's edit or copy is not locked, and is overwritten as ever.
+            _ => lock(&there),
+        }
     }
 
     /// Tries for the last time, if the disk lacks something.
@@ -120,9 +147,4 @@ fn beside(path: &Path) -> PathBuf {
     name.push(path.file_name().unwrap_or_default());
     name.push(".new");
     path.with_file_name(name)
-}
-
-/// The folder that `path` lies in.
-pub(super) fn folder(path: &Path) -> &Path {
-    path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

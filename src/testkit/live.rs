@@ -54,7 +54,7 @@ pub fn logged(
     rig: Rig,
     log: &Path,
 ) -> io::Result<(DuplexStream, impl Future<Output = io::Result<()>> + use<>)> {
-    let logger = Logger::start(None, false, Some(log))?;
+    let logger = Logger::to_file(log)?;
     Ok(served(rig, Some(logger)))
 }
 

@@ -125,8 +125,21 @@ impl Drop for Program {
 
 /// Runs the program to its end.
 pub fn once(folder: &Path, args: &[&str]) -> (Option<i32>, String, String) {
-    let Output { status, stdout, stderr } =
-        drivemu().current_dir(folder).args(args).output().expect("the program starts");
+    let mut command = drivemu();
+    command.current_dir(folder).args(args).stdin(Stdio::null());
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the program starts");
+    // One that was to refuse something and runs instead must not wait for ever.
+    let pid = child.id().to_string();
+    let (done, waits) = std::sync::mpsc::channel::<()>();
+    let guard = std::thread::spawn(move || {
+        if waits.recv_timeout(PATIENCE) == Err(std::sync::mpsc::RecvTimeoutError::Timeout) {
+            let _ = Command::new("kill").args(["-KILL", &pid]).status();
+        }
+    });
+    let Output { status, stdout, stderr } = child.wait_with_output().expect("it ends");
+    drop(done);
+    guard.join().expect("no panic");
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
     (status.code(), text(stdout), text(stderr))
 }

@@ -232,6 +232,41 @@ fn one_run_at_a_time() {
     assert_eq!(first.stop("TERM").0, Some(0));
 }
 
+/// What somebody removes during a run is there again with the next write. If another run has begun a new file
+/// meanwhile, that is the other's.
+#[test]
+fn a_file_that_was_removed_has_one_owner() {
+    let folder = folder();
+    let state = folder.path().join("state.yaml");
+    let args = ["hcfa-x", "--state", state.to_str().expect("text"), "--tcp", "127.0.0.1:0"];
+    let mut first = Program::run(&args);
+    let said = first.listen();
+    let store = |program: &Program, value| {
+        let [hi, lo] = u16::to_be_bytes(value);
+        assert_eq!(ask(program, &[6, 0xE8, 0x0B, hi, lo]).len(), 5, "the drive goes on");
+    };
+    fs::remove_file(&state).expect("removed");
+    store(&first, 1);
+    assert_eq!(kept(&state), (1, 1));
+    fs::remove_file(&state).expect("removed");
+    let second = Program::run(&args);
+    store(&second, 22);
+    store(&first, 2);
+    store(&first, 3);
+    first.wait_until_said(&said, "another run uses it");
+    store(&second, 23);
+    assert_eq!(kept(&state), (23, 2), "untouched by the first");
+    assert_eq!(first.stop("TERM").0, Some(1), "what it has stored is nowhere");
+    assert_eq!(
+        said.all().matches("can't write").count(),
+        2,
+        "once, and at the end: {}",
+        said.all()
+    );
+    assert_eq!(second.stop("TERM").0, Some(0));
+    assert_eq!(kept(&state), (23, 2));
+}
+
 #[test]
 fn a_link_to_the_file_stays_a_link() {
     let folder = folder();

@@ -4,11 +4,9 @@
 
 use super::key::Key;
 use super::{Mark, Path, Problem, Seg};
+use crate::problem::bounds::{self, DEPTH};
 use crate::text::is_control;
 use std::collections::BTreeMap;
-
-/// Levels of maps and lists that a file may have.
-pub(super) const MAX_DEPTH: usize = 64;
 
 /// Keys whose texts may have several lines; names have one.
 const PROSE: [&str; 4] = ["about", "assumed", "note", "why"];
@@ -32,7 +30,7 @@ pub(super) fn document(mark: Mark) -> Problem {
 
 /// A map or list one level too deep.
 pub(super) fn depth(path: Path, mark: Mark) -> Problem {
-    let what = format!("nested deeper than {MAX_DEPTH} levels");
+    let what = format!("nested deeper than {DEPTH} levels");
     Problem { mark: Some(mark), ..Problem::value(path, what) }
 }
 
@@ -47,6 +45,12 @@ pub(super) fn text(text: &str, path: &Path, mark: Mark) -> Option<Problem> {
     };
     let problem = Problem::value(path.clone(), what).advise("leave it out");
     Some(Problem { mark: Some(mark), ..problem })
+}
+
+/// A file, or something in it, beyond a bound.
+pub(super) fn length(what: &str, most: usize, unit: &str, mark: Mark) -> Problem {
+    let problem = Problem::value(Path::root(), bounds::length(what, most, unit));
+    Problem { mark: Some(mark), ..problem }
 }
 
 /// A key of the map at `path` that is there already or that can't be one; `None` for a good one.
@@ -125,7 +129,7 @@ mod tests {
 
     #[test]
     fn depth_has_a_bottom() {
-        let fits = "[".repeat(MAX_DEPTH) + &"]".repeat(MAX_DEPTH);
+        let fits = "[".repeat(DEPTH) + &"]".repeat(DEPTH);
         assert_eq!(problems(&fits), "");
         let stairs: String = (0..999).map(|i| " ".repeat(i) + "a:\n").collect();
         for text in ["[".repeat(65), "[".repeat(100_000), "- ".repeat(100_000), stairs] {

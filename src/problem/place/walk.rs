@@ -3,13 +3,19 @@
 //! Deliberately without recursion: the depth of a file is the author's choice, our stack is not.
 
 use super::lines::Lines;
-use super::refuse::{self, MAX_DEPTH, Seen};
+use super::refuse::{self, Seen};
 use super::{Entry, Key, Kind, Mark, Node, Path, Problem, syntax};
+use crate::problem::bounds;
 use saphyr_parser::{Event, Parser, ScalarStyle, ScanError, Span};
 
 /// The tree of `text`, as far as it is one, and what is wrong with it.
 pub(super) fn walk(text: &str) -> (Option<Node>, Vec<Problem>) {
-    let mut walk = Walk { lines: Lines::new(text), root: None, stack: vec![], problems: vec![] };
+    if text.len() > bounds::SIZE {
+        let start = Mark { line: 1, column: 1, length: 1 };
+        return (None, vec![refuse::length("a file", bounds::SIZE, "bytes", start)]);
+    }
+    let lines = Lines::new(text);
+    let mut walk = Walk { lines, root: None, stack: vec![], values: 0, problems: vec![] };
     let mut documents = 0;
     let mut parser = Parser::new_from_str(text);
     while let Some(event) = parser.next_event() {
@@ -21,7 +27,7 @@ pub(super) fn walk(text: &str) -> (Option<Node>, Vec<Problem>) {
             Ok((event, span)) => walk.event(event, span),
             Err(error) => walk.error(&error),
         };
-        if !going {
+        if !going || walk.problems.len() >= bounds::PROBLEMS {
             break;
         }
     }
@@ -33,6 +39,8 @@ struct Walk<'t> {
     root: Option<Node>,
     /// The collections that are open, outermost first.
     stack: Vec<Frame>,
+    /// Scalars, maps and lists so far.
+    values: usize,
     problems: Vec<Problem>,
 }
 
@@ -60,6 +68,12 @@ impl Walk<'_> {
         match event {
             Event::Scalar(text, style, anchor, tag) => {
                 let mark = self.scalar_mark(&text, style, span);
+                if let Some((what, most)) = self.too_long(&text) {
+                    return self.end(refuse::length(what, most, "characters", mark));
+                }
+                if self.is_one_too_many() {
+                    return self.end(refuse::length("a file", bounds::VALUES, "values", mark));
+                }
                 self.refuse_anchor(anchor, mark);
                 self.problems.extend(refuse::text(&text, &self.here(), mark));
                 let plain = style == ScalarStyle::Plain && tag.is_none();
@@ -83,10 +97,29 @@ impl Walk<'_> {
         true
     }
 
+    /// What the scalar `text` is if it is too long for that, and how long that may be.
+    fn too_long(&self, text: &str) -> Option<(&'static str, usize)> {
+        let is_key = matches!(
+            self.stack.last().map(|frame| &frame.inside),
+            Some(Inside::Map { pending: None, .. })
+        );
+        let (what, most) = if is_key { ("a key", bounds::KEY) } else { ("a text", bounds::TEXT) };
+        // Bytes are counted in no time, and are no fewer than characters.
+        (text.len() > most && text.chars().count() > most).then_some((what, most))
+    }
+
+    fn is_one_too_many(&mut self) -> bool {
+        self.values += 1;
+        self.values > bounds::VALUES
+    }
+
     fn open(&mut self, anchor: usize, span: Span, inside: Inside) -> bool {
         let mark = self.lines.mark(span.start.line(), span.start.col() + 1, 1);
         self.refuse_anchor(anchor, mark);
-        if self.stack.len() == MAX_DEPTH {
+        if self.is_one_too_many() {
+            return self.end(refuse::length("a file", bounds::VALUES, "values", mark));
+        }
+        if self.stack.len() == bounds::DEPTH {
             return self.end(refuse::depth(self.here(), mark));
         }
         self.stack.push(Frame { path: self.here(), span, owner: self.owner(), inside });
