@@ -1,6 +1,7 @@
 //! The integration tests in one binary, one subject a module.
 
 mod allocation;
+mod bounds;
 mod documents;
 mod expect;
 mod fault;

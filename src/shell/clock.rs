@@ -51,6 +51,11 @@ impl Clock {
         wall_now() + time
     }
 
+    /// Is a moment of the wall over?
+    pub fn is_over(at: tokio::time::Instant) -> bool {
+        wall_now() >= at
+    }
+
     /// Waits for a moment of the wall; for ever without one.
     pub async fn until_wall(at: Option<tokio::time::Instant>) {
         match at {

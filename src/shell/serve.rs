@@ -18,7 +18,15 @@ use crate::line::Framing;
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
 use crate::wire::Frame;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tracing::warn;
+
+/// Of the wall: a line works so long at a time on what is due already.
+const SLICE: Duration = Duration::from_millis(50);
+
+/// That the machine is too slow is told once.
+static LAGS: AtomicBool = AtomicBool::new(false);
 
 /// A line as a task serves it.
 #[derive(Debug)]
@@ -105,11 +113,19 @@ impl Served {
         self.bus.reframe_all(self.framing());
     }
 
-    /// Sleeps until the bus wants to be woken.
-    async fn woken(&self) {
+    /// When the bus or the scenario has something to do.
+    fn due(&self) -> Option<Instant> {
         let bus = self.bus.poll_at().map(|wake| wake.at);
         let stage = self.stage.as_ref().and_then(Stage::poll_at);
-        self.clock.until([bus, stage].into_iter().flatten().min()).await;
+        [bus, stage].into_iter().flatten().min()
+    }
+
+    /// Sleeps until the bus wants to be woken. If that is over already, signals and other lines have their turn first.
+    async fn woken(&self) {
+        match self.due() {
+            Some(at) if at <= self.clock.now() => tokio::task::yield_now().await,
+            due => self.clock.until(due).await,
+        }
     }
 
     /// Lets time pass up to now.
@@ -117,7 +133,25 @@ impl Served {
         self.advance_to(self.clock.now());
     }
 
-    fn advance_to(&mut self, now: Instant) {
+    /// Lets time pass up to `now` and says how far that got. Where this machine can't do in time what the line asks for, it
+    /// is cut off after a slice of the wall, and the emulated world lags behind: whoever serves the line looks at its
+    /// port and lets others run before it goes on.
+    fn advance_to(&mut self, now: Instant) -> Instant {
+        let slice = Clock::wall_after(SLICE);
+        while let Some(at) = self.due().filter(|at| *at < now) {
+            self.pass(at);
+            if Clock::is_over(slice) {
+                if !LAGS.swap(true, Ordering::Relaxed) {
+                    warn!("{}: can't keep up with its clock; emulated time lags behind", self.name);
+                }
+                return self.bus.now().min(now);
+            }
+        }
+        self.pass(now);
+        now
+    }
+
+    fn pass(&mut self, now: Instant) {
         match &self.stage {
             Some(stage) => stage.advance_to(&mut self.bus, now),
             None => self.bus.advance_to(now),
@@ -126,8 +160,7 @@ impl Served {
 
     /// Takes bytes that were just read from `link`.
     fn receive(&mut self, link: LinkId, bytes: &[u8]) {
-        let at = self.arrival(link);
-        self.advance_to(at);
+        let at = self.advance_to(self.arrival(link));
         self.bus.receive(at, link, bytes);
         if let Some(stage) = &self.stage {
             stage.look(&mut self.bus);

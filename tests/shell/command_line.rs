@@ -61,6 +61,18 @@ const REFUSED: &[(&[&str], i32, &str)] = &[
     (&["run", "hcfa-x", "--log-file", "no/such/log"], 1, "can't write no/such/log"),
     (&["run", "broken.yaml"], 2, "broken.yaml:1:9"),
     (&["run", "binary.yaml"], 2, "this is not UTF-8 text"),
+    (
+        &["run", "/dev/zero"],
+        2,
+        "can't read /dev/zero: a file must not have more than 16777216 bytes",
+    ),
+    (&["run", "./"], 2, "can't read ./: this is a directory"),
+    (&["run", "hcfa-x", "--scenario", "/dev/zero"], 2, "can't read /dev/zero: a file must not"),
+    (&["run", "hcfa-x", "--state", "/dev/zero"], 2, "can't use /dev/zero: this is no file"),
+    (&["show", "/dev/zero"], 2, "can't read /dev/zero: a file must not"),
+    (&["check", "/dev/zero"], 2, "/dev/zero: a file must not"),
+    (&["check", "."], 2, ".: this is a directory"),
+    (&["run", "endless.yaml"], 2, "can't read /dev/zero: a file must not"),
     (&["run", "bench.yaml", "--unit", "3"], 2, "--unit goes with a model"),
     (&["run", "bench.yaml", "--pacing", "line"], 2, "--pacing goes with a model"),
     (&["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--pacing", "line"], 2, "no characters that take"),
@@ -86,6 +98,7 @@ fn refusals_and_their_exit_codes() {
     file(&folder, "occupied", "precious");
     file(&folder, "broken.yaml", "format: x\n");
     file(&folder, "bench.yaml", BENCH);
+    file(&folder, "endless.yaml", "lines: [{pty: auto, drives: [{model: /dev/zero}]}]");
     std::fs::write(folder.path().join("binary.yaml"), [0xFF, 0xFE, 0x00]).expect("written");
     for (args, code, says) in REFUSED {
         let (got, stdout, stderr) = once(folder.path(), args);

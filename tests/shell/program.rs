@@ -73,6 +73,14 @@ impl Program {
         (code, stdout, stderr)
     }
 
+    /// The most memory that it has used so far, in KiB; 0 where the system does not say.
+    pub fn memory(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id()));
+        let status = status.unwrap_or_default();
+        let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        most.and_then(|it| it.trim().trim_end_matches(" kB").parse().ok()).unwrap_or(0)
+    }
+
     /// Ends the run as a power failure does.
     pub fn kill(mut self) {
         self.child.kill().expect("killed");

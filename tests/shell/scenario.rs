@@ -133,3 +133,29 @@ fn a_bad_scenario_is_refused() {
         assert!(code != 0 || out.contains("valid scenario") || out.contains("\"steps\""), "{out}");
     }
 }
+
+/// More to do than any machine can: emulated time lags behind, masters are served, and a signal ends it.
+#[test]
+fn a_run_that_can_not_keep_up_is_still_served() {
+    use drivemu::wire::mbap;
+    use std::io::{Read, Write};
+    let folder = folder();
+    let steps = file(
+        &folder,
+        "busy.yaml",
+        "steps: [{name: s, do: [power on], repeat: {every: 1ms, times: 4000000000}}]",
+    );
+    let args = ["hcfa-x", "--tcp", "127.0.0.1:0", "--rate", "1000000"];
+    let mut program = Program::run(&[&args[..], &["--scenario", text(&steps)]].concat());
+    let said = program.listen();
+    program.wait_until_said(&said, "emulated time lags behind");
+    for _ in 0..5 {
+        let mut stream = std::net::TcpStream::connect(program.addr()).expect("connects");
+        stream.write_all(&mbap::encode(0, 1, &[3, 0x03, 0x04, 0, 1])).expect("written");
+        stream.read_exact(&mut [0; 11]).expect("an answer");
+    }
+    // Nobody reads stdout here: what it does not take is lost and counted, not kept.
+    let most = program.memory();
+    assert!(most < 300 << 10, "{most} KiB");
+    assert_eq!(program.stop("TERM").0, Some(0));
+}
