@@ -310,6 +310,18 @@ pub enum Change {
     },
     /// A motion under way goes by another setting from now on.
     Replans(Replanned),
+    /// A level holds its move back: it slows down to a standstill, and the move is not over.
+    Pauses,
+    /// The move that was held back goes on.
+    Resumes {
+        /// Where to, in counts of the drive.
+        to: i64,
+    },
+    /// It gives up what it was behind its command.
+    DeviationCleared {
+        /// Counts.
+        counts: i64,
+    },
     /// It slows down to a standstill.
     Stops,
     /// Its power stage went off while it moved: it runs out.

@@ -11,9 +11,9 @@ use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
 use drivemu::words::{
-    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, Input, InterruptRule, Lasts,
-    LimitRule, LimitSource, LimitStop, Modifier, OriginPosition, OriginStop, Output, Pace,
-    Quantity, Setting, SoftLimitRule, Taken, Target, Then, Threshold, Word,
+    Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, InhibitRule, Input,
+    InterruptRule, Lasts, LimitRule, LimitSource, LimitStop, Modifier, OriginPosition, OriginStop,
+    Output, Pace, Quantity, Setting, SoftLimitRule, Taken, Target, Then, Threshold, Word,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -74,6 +74,9 @@ fn roles() -> String {
     section::<Target>(&mut out, "Targets of segments", targets);
     let rules = "Whether interrupt positioning may start: `axis.interrupt.rule`.";
     section::<InterruptRule>(&mut out, "Rules for interrupt positioning", rules);
+    let inhibits =
+        "What becomes of what the axis is behind when `command_inhibit` rises: `axis.inhibit`.";
+    section::<InhibitRule>(&mut out, "Rules for inhibited commands", inhibits);
     let lasts = "How long a velocity segment lasts: `axis.segments.velocity.trigger`.";
     section::<Lasts>(&mut out, "Triggers of segments", lasts);
     homing(&mut out);

@@ -136,6 +136,11 @@ fn is_condition(input: Input) -> bool {
             | Input::EnableInhibit
             | Input::SegmentReverse
             | Input::ReversePosition
+            | Input::ReverseSpeed
+            | Input::ZeroSpeedClamp
+            | Input::Pause
+            | Input::ClearDeviation
+            | Input::CommandInhibit
             | Input::InterruptInhibit
             | Input::Select0
             | Input::Select1

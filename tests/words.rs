@@ -59,7 +59,12 @@ fn each_input_acts_from_each_source() {
                 | Input::InterruptStart
                 | Input::InterruptInhibit
                 | Input::InterruptUnlock
-                | Input::ReversePosition => functions::acts(&mut rig, input, *source, &place),
+                | Input::ReversePosition
+                | Input::Pause
+                | Input::ClearDeviation
+                | Input::CommandInhibit
+                | Input::ReverseSpeed
+                | Input::ZeroSpeedClamp => functions::acts(&mut rig, input, *source, &place),
                 Input::Stop | Input::QuickStop => {
                     running(&mut rig);
                     source(&mut rig, input, true);

@@ -8,6 +8,6 @@ mod servo;
 
 pub use chain::{Chain, MOST_WAITS, Rule, Wait};
 pub use hold::Hold;
-pub use motor::{Control, HomeOrder, Jog, Motor, Ramp, Slope, Wants};
+pub use motor::{Commands, Control, HomeOrder, Jog, Motor, Ramp, Slope, Wants};
 pub use phase::{Phase, Replan, Stage};
 pub use servo::{Servo, Trip};

@@ -16,10 +16,12 @@ mod home;
 mod limits;
 mod look;
 mod replan;
+mod suspend;
 
 pub use goal::{Ramp, Slope};
 pub use home::HomeOrder;
 pub use look::Control;
+pub use suspend::Commands;
 
 use super::phase::{Phase, Stage};
 use crate::event::Ignored;
@@ -41,6 +43,10 @@ pub struct Wants {
     pub stop: bool,
     /// Stand at once.
     pub quick_stop: bool,
+    /// Hold a move back, to go on later.
+    pub pause: bool,
+    /// What becomes of the commands of moves.
+    pub commands: Commands,
     /// Jog; `None` for neither direction, or both.
     pub jog: Option<Jog>,
     /// How a stop slows down that begins now, or is under way; `None` as the motion says.
@@ -87,6 +93,8 @@ pub struct Motor {
     /// Its hard stops, while others block the axis.
     blocked: Option<Option<[i64; 2]>>,
     wants: Wants,
+    /// A level holds the move under way back.
+    paused: bool,
     /// An order ended the jog; its level must go before it acts again.
     jog_spent: bool,
     /// The last move or homing has come to its end.
@@ -119,6 +127,7 @@ impl Motor {
             machine,
             blocked: None,
             wants: Wants::default(),
+            paused: false,
             jog_spent: false,
             arrived: false,
             deviates: false,
@@ -223,6 +232,7 @@ impl Motor {
         } else {
             self.obey_limits(now);
         }
+        self.suspend(now);
         match wants.jog {
             None if matches!(self.phase, Phase::Jogging { .. }) => self.brake(now),
             None => {}
@@ -245,17 +255,29 @@ impl Motor {
         interrupt: bool,
     ) -> Result<(), Ignored> {
         self.may_start(interrupt)?;
+        if self.wants.commands != Commands::Taken {
+            return Err(Ignored::Inhibited);
+        }
         let here = self.commanded(now);
         let target = target(here);
         self.may_go(now, target.saturating_sub(here) as f64)?;
         if ramp.speed == 0.0 {
             return Err(Ignored::NoSpeed);
         }
-        let trajectory = ramp.reach(now, self.lead(now).0, target);
+        self.goal = Goal::Position(target, ramp);
+        let lead = self.lead(now).0;
+        let trajectory = match self.wants.pause {
+            true => self.held_back(now, lead),
+            false => ramp.reach(now, lead, target),
+        };
         self.lose_origin(HomeEnd::Replaced);
-        (self.goal, self.forward) = (Goal::Position(target, ramp), target >= here);
+        self.forward = target >= here;
         self.begin(now, trajectory, Phase::Moving);
         self.told.push_back(Stage::Moves(target));
+        if self.wants.pause {
+            self.paused = true;
+            self.told.push_back(Stage::Pauses);
+        }
         self.advance(now);
         Ok(())
     }
@@ -444,6 +466,7 @@ impl Motor {
         };
         let jumps = trajectory.state(now).position != self.state(now).position;
         (self.trajectory, self.phase, self.arrived) = (trajectory, phase, false);
+        self.paused = false;
         self.look_ahead(now);
         if jumps {
             self.look_at_switches(now);

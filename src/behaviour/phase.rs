@@ -57,6 +57,12 @@ pub enum Stage {
     Jogs(f64),
     /// It goes by another setting from now on.
     Replans(Replan),
+    /// A level holds its move back: it slows down to a standstill.
+    Pauses,
+    /// The move goes on to this position.
+    Resumes(i64),
+    /// It gives up so many counts that it was behind its command.
+    Clears(i64),
     /// It slows down.
     Stops,
     /// It runs out without power.

@@ -123,7 +123,7 @@ fn card(model: &Model, id: RowId) -> String {
     );
     line("note", &row.note);
     line("assumed", &row.assumed);
-    line("does not", &not_simulated(model, id).join(", "));
+    line("no effect", &not_simulated(model, id).join(", "));
     for window in model.map.windows().iter().filter(|window| window.base != 0) {
         if let Some(address) = row
             .at

@@ -6,7 +6,7 @@ use super::levels::Level;
 use super::settings::Moment;
 use crate::behaviour::{Phase, Ramp, Slope};
 use crate::model::{Finish, SettingRow};
-use crate::words::Setting;
+use crate::words::{Input, Setting};
 
 /// What a motion goes by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Drive {
         }
         match self.course {
             Some(Course::Run) => {
-                let ramp = self.axis(Moment::UnderWay).run(false);
+                let ramp = self.run_by_order(Moment::UnderWay);
                 self.motor.retune_run(self.now, ramp);
             }
             Some(Course::Move { rows, way }) => {
@@ -83,6 +83,15 @@ impl Drive {
             Some(Course::Home { .. }) => self.follow_home_settings(),
             // What a level asks for is followed with the levels.
             Some(Course::Level(_) | Course::Alarm) | None => {}
+        }
+    }
+
+    /// How a run by order goes: turned round, or kept at rest, while signals say so.
+    pub(super) fn run_by_order(&self, moment: Moment) -> Ramp {
+        let ramp = self.axis(moment).run(self.inputs.has(Input::ReverseSpeed));
+        match self.inputs.has(Input::ZeroSpeedClamp) {
+            true => Ramp { speed: 0.0, ..ramp },
+            false => ramp,
         }
     }
 

@@ -98,7 +98,7 @@ impl Drive {
                 self.take_settings(Moment::Stop);
                 false
             }
-            Stage::Replans(_) => {
+            Stage::Replans(_) | Stage::Pauses | Stage::Resumes(_) => {
                 self.look_at_places();
                 false
             }

@@ -11,6 +11,8 @@ use crate::words::{Input, Lasts, Setting};
 pub(super) struct Level {
     pub(super) kind: LevelKind,
     reverse: bool,
+    /// It goes the opposite way of what its signals say.
+    turned: bool,
 }
 
 /// Which settings a level goes by.
@@ -61,7 +63,7 @@ impl Level {
 impl Drive {
     /// The run that levels ask for, at the speed that counts. Levels that contradict each other ask for none.
     pub(super) fn wanted_run(&self) -> Option<(Level, Ramp)> {
-        let level = self.level()?;
+        let level = self.level().filter(|_| !self.inputs.has(Input::ZeroSpeedClamp))?;
         let moment = match self.is_under_way(level) {
             true => Moment::UnderWay,
             false => self.order_moment(),
@@ -85,16 +87,16 @@ impl Drive {
         let settings = self.settings(&axis.settings, moment);
         let jog = |[speed, accel, decel]: [Setting; 3]| {
             let speed = settings.speed(speed).abs();
-            let speed = if level.reverse { -speed } else { speed };
+            let speed = if level.reverse != level.turned { -speed } else { speed };
             settings.ramp(speed, None, accel, decel)
         };
         Some(match level.kind {
             LevelKind::Jog => jog([Setting::JogSpeed, Setting::JogAccel, Setting::JogDecel]),
             LevelKind::Inch => jog([Setting::InchSpeed, Setting::InchAccel, Setting::InchDecel]),
-            LevelKind::Run => settings.run(false),
+            LevelKind::Run => settings.run(level.turned),
             LevelKind::Velocity(number) => {
                 let rows = axis.segments.velocity.as_ref()?.get(number)?;
-                self.settings(rows, moment).run(level.reverse)
+                self.settings(rows, moment).run(level.reverse != level.turned)
             }
         })
     }
@@ -139,14 +141,15 @@ impl Drive {
     /// What levels ask for, if they ask for one thing.
     pub(super) fn level(&self) -> Option<Level> {
         let has = |input| self.inputs.has(input);
+        let turned = has(Input::ReverseSpeed);
         let velocity = self.velocity.map(|it| {
             let kind = LevelKind::Velocity(it.number);
-            Level { kind, reverse: has(Input::SegmentReverse) }
+            Level { kind, reverse: has(Input::SegmentReverse), turned }
         });
         if self.velocity.is_some_and(|it| it.by_edge) {
             return velocity;
         }
-        let level = |input, kind, reverse| has(input).then_some(Level { kind, reverse });
+        let level = |input, kind, reverse| has(input).then_some(Level { kind, reverse, turned });
         let levels = [
             level(Input::JogPos, LevelKind::Jog, false),
             level(Input::JogNeg, LevelKind::Jog, true),

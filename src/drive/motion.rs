@@ -4,12 +4,12 @@
 use super::Drive;
 use super::course::{Course, MoveRows};
 use super::settings::Moment;
-use crate::behaviour::{Control, Phase, Replan, Stage, Wants};
+use crate::behaviour::{Commands, Control, Phase, Replan, Stage, Wants};
 use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
 use crate::words::{
-    Action, HomeStarter, Input, Modifier, Modifiers, Setting, SoftLimitRule, Threshold,
+    Action, HomeStarter, InhibitRule, Input, Modifier, Modifiers, Setting, SoftLimitRule, Threshold,
 };
 
 impl Drive {
@@ -173,7 +173,10 @@ impl Drive {
     /// Runs: also when it runs already, and with `interrupt` when it moves to a position.
     fn start_run(&mut self, interrupt: bool) -> Result<(), Ignored> {
         let moment = self.order_moment();
-        let ramp = self.axis(moment).run(false);
+        if self.inputs.has(Input::ZeroSpeedClamp) {
+            return Err(Ignored::Inhibited);
+        }
+        let ramp = self.run_by_order(moment);
         let over = match self.motor.phase() {
             Phase::Running => true,
             Phase::Moving => interrupt,
@@ -192,18 +195,34 @@ impl Drive {
 
     /// What is wanted of the axis, apart from runs.
     fn wants(&self) -> Wants {
-        let has = |input| self.inputs.has(input);
+        let (has, commands) = (|input| self.inputs.has(input), self.commands());
         Wants {
             power: self.servo.is_enabled(),
             // What brakes for an alarm starts nothing.
             stop: has(Input::Stop) || self.servo.is_braking(),
             quick_stop: has(Input::QuickStop),
+            pause: has(Input::Pause),
+            commands,
             jog: None,
             decel: None,
             switches: self.inputs,
             soft_limits: self.soft_limits(),
             limit_stop: self.chosen(&self.model.wiring.limits.stop).unwrap_or_default(),
-            deviation: self.threshold(Threshold::Deviation),
+            deviation: self
+                .threshold(Threshold::Deviation)
+                .filter(|_| commands != Commands::Cleared),
+        }
+    }
+
+    /// What becomes of the commands of moves.
+    fn commands(&self) -> Commands {
+        let keeps = || self.chosen(&self.model.wiring.axis.inhibit) == Some(InhibitRule::Keeps);
+        let inhibited = self.inputs.has(Input::CommandInhibit);
+        match self.inputs.has(Input::ClearDeviation) {
+            true => Commands::Cleared,
+            false if inhibited && keeps() => Commands::Inhibited,
+            false if inhibited => Commands::Cleared,
+            false => Commands::Taken,
         }
     }
 
@@ -222,6 +241,9 @@ impl Drive {
                 Some(number) => Change::VelocitySegment { number, mrpm: self.mrpm(speed) },
             },
             Stage::Replans(what) => Change::Replans(self.replanned(what)),
+            Stage::Pauses => Change::Pauses,
+            Stage::Resumes(to) => Change::Resumes { to: at(to) },
+            Stage::Clears(counts) => Change::DeviationCleared { counts },
             Stage::Stops => Change::Stops,
             Stage::Coasts => Change::Coasts,
             Stage::Stands(position) => Change::Stands { at: at(position) },

@@ -207,6 +207,9 @@ impl Drive {
         if level.input() != input {
             return Some(Ignored::Moving);
         }
+        if self.inputs.has(Input::ZeroSpeedClamp) {
+            return Some(Ignored::Inhibited);
+        }
         let Some((_, ramp)) = self.wanted_run() else { return Some(Ignored::NoSpeed) };
         if self.motor.is_jog_spent() {
             return Some(Ignored::Spent);

@@ -61,7 +61,8 @@ impl Drive {
         } else if let Some(at) = self.in_position_at() {
             self.chain.arrive(self.now, at);
         }
-        if !matches!(phase, Phase::Jogging { .. }) {
+        let waits = free && self.inputs.has(Input::ZeroSpeedClamp);
+        if !matches!(phase, Phase::Jogging { .. }) && !waits {
             self.velocity = self.velocity.filter(|it| !it.by_edge);
         }
     }
@@ -137,7 +138,10 @@ impl Drive {
             let run = self.wanted_run();
             let may = match run {
                 Some((_, ramp)) => self.motor.may_go(self.now, ramp.speed),
-                None if self.velocity.is_some() => Err(Ignored::NoSpeed),
+                None if self.velocity.is_some() => {
+                    let waits = self.inputs.has(Input::ZeroSpeedClamp);
+                    if waits { Ok(()) } else { Err(Ignored::NoSpeed) }
+                }
                 None => Err(Ignored::NoSegment),
             };
             self.velocity = self.velocity.filter(|_| may.is_ok());

@@ -203,6 +203,9 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             ("chain_step", json!({"from": from, "to": to, "why": why}))
         }
         Change::Replans(what) => ("replanned", replanned(what)),
+        Change::Pauses => ("pauses", json!({})),
+        Change::Resumes { to } => ("resumes", json!({"to": to})),
+        Change::DeviationCleared { counts } => ("deviation_cleared", json!({"counts": counts})),
         Change::Stops => ("stops", json!({})),
         Change::Coasts => ("coasts", json!({})),
         Change::Stands { at } => ("stands", json!({"at": at})),

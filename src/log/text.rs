@@ -222,6 +222,11 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
         }
         Change::Replans(what) => replanned(what),
+        Change::Pauses => "pauses".into(),
+        Change::Resumes { to } => format!("goes on to {to}"),
+        Change::DeviationCleared { counts } => {
+            format!("position deviation cleared: {counts} counts")
+        }
         Change::Stops => "stops".into(),
         Change::Coasts => "runs out, the servo is off".into(),
         Change::Stands { at } => format!("stands at {at}"),

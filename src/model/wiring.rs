@@ -37,7 +37,7 @@ use super::line::Coded;
 use crate::time::Duration;
 use crate::units::Unit;
 use crate::words::{
-    Action, AlarmCause, Input, Modifier, Output, Quantity, Setting, Taken, Threshold,
+    Action, AlarmCause, InhibitRule, Input, Modifier, Output, Quantity, Setting, Taken, Threshold,
 };
 
 /// What a model is wired to. Lists are in the order of the file, and short.
@@ -282,6 +282,8 @@ pub struct Axis {
     pub segments: Segments,
     /// Interrupt positioning.
     pub interrupt: Option<Interrupt>,
+    /// What becomes of what the axis is behind a command that is inhibited, where the model says.
+    pub inhibit: Option<Choice<InhibitRule>>,
 }
 
 /// The gear between units of position and counts: a unit is numerator by denominator counts.
@@ -332,6 +334,7 @@ impl Default for Axis {
             slots: 0,
             segments: Segments::default(),
             interrupt: None,
+            inhibit: None,
         }
     }
 }

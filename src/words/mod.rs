@@ -24,7 +24,7 @@ pub use homing::{
 };
 pub use quantity::Quantity;
 pub use refusal::{Detail, Refusal, RowId};
-pub use segment::{Condition, InterruptRule, Lasts, Target};
+pub use segment::{Condition, InhibitRule, InterruptRule, Lasts, Target};
 pub use setting::Setting;
 pub use signal::{Input, Inputs, Output, Outputs};
 pub use taken::Taken;

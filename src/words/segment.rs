@@ -1,4 +1,5 @@
-//! What models say about segments and interrupt positioning: what a target is, how long a run lasts, what a chain waits for.
+//! What models say about segments, interrupt positioning and commands that are inhibited: what a target is, how long a
+//! run lasts, what a chain waits for.
 
 use super::words;
 
@@ -17,6 +18,14 @@ words! {
         Relative "relative" "a way to go",
         Absolute "absolute" "a position",
         None "none" "the segment is empty: nothing starts it",
+    }
+}
+
+words! {
+    /// What becomes of what the axis is behind its command when that is inhibited.
+    InhibitRule {
+        Clears "clears" "it is dropped, as by `clear_deviation`",
+        Keeps "keeps" "it is made up for",
     }
 }
 

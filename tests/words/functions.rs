@@ -55,6 +55,44 @@ pub fn acts(rig: &mut Rig, input: Input, source: fn(&mut Rig, Input, bool), plac
                 assert_eq!(position, want, "{place}");
             }
         }
+        Input::Pause => {
+            give(rig, Action::Enable);
+            give(rig, Action::MoveStart);
+            rig.advance(Duration::from_millis(200));
+            source(rig, input, true);
+            rig.advance(Duration::from_millis(400));
+            assert_eq!(rig.drive().quantity(Quantity::SpeedActual), 0, "{place}{}", rig.log());
+            assert!(rig.drive().quantity(Quantity::PositionActual) < 100_000, "{place}");
+            source(rig, input, false);
+            rig.advance(Duration::from_secs(5));
+            assert_eq!(rig.drive().quantity(Quantity::PositionActual), 200_000, "{place}");
+        }
+        Input::ClearDeviation | Input::CommandInhibit => {
+            give(rig, Action::Enable);
+            give(rig, Action::MoveStart);
+            rig.advance(Duration::from_millis(200));
+            let here = rig.drive().quantity(Quantity::PositionActual);
+            source(rig, input, true);
+            assert_eq!(rig.drive().quantity(Quantity::ErrorFollowing), 0, "{place}");
+            rig.advance(Duration::from_millis(400));
+            assert_eq!(rig.drive().quantity(Quantity::PositionActual), here, "{place}");
+            give(rig, Action::MoveStart);
+            assert!(!rig.drive().output(Output::Moving), "it is a level: {place}");
+            source(rig, input, false);
+            give(rig, Action::MoveStart);
+            assert!(rig.drive().output(Output::Moving), "{place}{}", rig.log());
+        }
+        Input::ReverseSpeed | Input::ZeroSpeedClamp => {
+            give(rig, Action::Enable);
+            by_bit(rig, Input::JogPos, true);
+            let speed = if input == Input::ReverseSpeed { -60 } else { 0 };
+            for (on, want) in [(true, speed), (false, 60)] {
+                source(rig, input, on);
+                rig.advance(Duration::from_millis(500));
+                let got = rig.drive().quantity(Quantity::SpeedActual);
+                assert_eq!(got, want, "{place}{}", rig.log());
+            }
+        }
         _ => unreachable!("{place}"),
     }
 }

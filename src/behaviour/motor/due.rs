@@ -66,8 +66,11 @@ impl Motor {
                 false => self.trajectory.crossing(low as f64, Way::Falling, now),
             }),
             index: wait.index.and_then(|index| self.next_index(now, index)),
-            // A run at a speed that has become 0 waits for another.
-            end: self.trajectory.end().filter(|_| self.is_moving() && self.phase != Phase::Running),
+            // A run at a speed that has become 0 waits for another, and a move that is held back for its level.
+            end: self
+                .trajectory
+                .end()
+                .filter(|_| self.is_moving() && self.phase != Phase::Running && !self.paused),
             time: wait.until,
         };
     }
@@ -107,6 +110,10 @@ impl Motor {
     fn end(&mut self, now: Instant) {
         if self.is_homing() {
             return self.home_stands(now);
+        }
+        // A move that is held back is not over.
+        if self.paused {
+            return;
         }
         self.arrived = self.phase == Phase::Moving;
         self.stand(now);

@@ -37,6 +37,9 @@ impl Motor {
         if before == goal {
             return;
         }
+        if self.paused {
+            return self.tell_difference(before, goal);
+        }
         let from = self.trajectory.state(now);
         let trajectory = match goal {
             Goal::None => return,

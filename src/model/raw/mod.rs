@@ -213,6 +213,7 @@ pub const KEYS: &[&str] = &[
     "homing",
     "id",
     "index",
+    "inhibit",
     "init",
     "inputs",
     "interrupt",

@@ -1,6 +1,6 @@
 //! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
 
-use super::{RawChosen, RawDigit, RawInterrupt, RawSegments};
+use super::{RawChoice, RawChosen, RawDigit, RawInterrupt, RawSegments};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -183,6 +183,8 @@ pub struct RawAxis {
     pub segments: RawSegments,
     /// A move that takes the place of a motion under way.
     pub interrupt: Option<RawInterrupt>,
+    /// What becomes of what the axis is behind its command when `command_inhibit` rises: `clears` (default) or `keeps`.
+    pub inhibit: Option<RawChoice<String>>,
     /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
     /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
     pub position_gain: Option<f64>,

@@ -108,6 +108,9 @@ impl Wirer<'_> {
         self.segments(segments, &path.key("segments"), &inputs);
         let interrupt = raw.and_then(|raw| raw.interrupt.as_ref());
         self.interrupt(interrupt, &path.key("interrupt"), &inputs);
+        if let Some(raw) = raw {
+            self.inhibit(&raw.inhibit, &path.key("inhibit"), &inputs);
+        }
         self.homing_starts(&inputs, &actions);
         let Some(raw) = raw else { return };
         let per_rev = path.key("counts_per_rev");
@@ -265,7 +268,18 @@ impl Wirer<'_> {
     /// What ends or shows a motion, where there is none.
     fn signals_without_motion(&mut self, inputs: &[Input], actions: &[Action]) {
         let path = Path::root().key("signals");
-        let ends = [Input::Stop, Input::QuickStop, Input::LimitPos, Input::LimitNeg];
+        let ends = [
+            Input::Stop,
+            Input::QuickStop,
+            Input::LimitPos,
+            Input::LimitNeg,
+            Input::Pause,
+            Input::ClearDeviation,
+            Input::CommandInhibit,
+            Input::ReverseSpeed,
+            Input::ReversePosition,
+            Input::ZeroSpeedClamp,
+        ];
         let ends = ends.into_iter().filter(|it| inputs.contains(it));
         let orders = [Action::Stop, Action::QuickStop].into_iter();
         let orders = orders.filter(|it| actions.contains(it)).map(Word::name);

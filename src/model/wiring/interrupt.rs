@@ -1,10 +1,10 @@
-//! Interrupt positioning, compiled: the rows that it goes by, and whether its signals go with it.
+//! Interrupt positioning and inhibited commands, compiled: the rows that they go by, and whether their signals go with them.
 
 use super::SettingRow;
 use super::choice::Choice;
 use super::compile::Wirer;
 use super::segment_rows::MOVE;
-use crate::model::raw::RawInterrupt;
+use crate::model::raw::{RawChoice, RawInterrupt};
 use crate::problem::{Path, Problem};
 use crate::words::{Input, InterruptRule, Output, RowId, Word};
 
@@ -25,6 +25,21 @@ impl Interrupt {
 }
 
 impl Wirer<'_> {
+    /// What becomes of a deviation when commands are inhibited, where something inhibits them.
+    pub(super) fn inhibit(
+        &mut self,
+        raw: &Option<RawChoice<String>>,
+        path: &Path,
+        inputs: &[Input],
+    ) {
+        if raw.is_some() && !inputs.contains(&Input::CommandInhibit) {
+            let what = "changes nothing: no input is `command_inhibit`";
+            self.problems
+                .push(Problem::key(path.clone(), what).advise("wire it, or leave this out"));
+        }
+        self.wiring.axis.inhibit = self.words_chosen(raw, "rule for inhibited commands", path);
+    }
+
     pub(super) fn interrupt(&mut self, raw: Option<&RawInterrupt>, path: &Path, inputs: &[Input]) {
         if let Some(raw) = raw {
             let settings = self.segment_settings(&raw.quantities, 0, &MOVE, path);

@@ -1,6 +1,6 @@
 //! `sim: none` is a promise: a row says it if, and only if, nothing is wired to it.
 
-use super::{Counts, Homing, Interrupt, Number, Reaction, Wiring};
+use super::{Choice, Counts, Homing, Interrupt, Number, Reaction, Wiring};
 use crate::model::line::{LineRules, WordOrder};
 use crate::model::rows::Compiled;
 use crate::model::{Applies, RowId};
@@ -80,6 +80,7 @@ fn used(len: usize, line: &LineRules, wiring: &Wiring) -> Vec<bool> {
     wiring.homing.iter().flat_map(Homing::rows).for_each(&mut mark);
     wiring.limits.rows().for_each(&mut mark);
     wiring.axis.segments.rows().for_each(&mut mark);
+    wiring.axis.inhibit.iter().filter_map(Choice::row).for_each(&mut mark);
     wiring.axis.interrupt.iter().flat_map(Interrupt::rows).for_each(&mut mark);
     wiring.user_outputs.iter().copied().for_each(&mut mark);
     for (_, number) in &wiring.thresholds {
