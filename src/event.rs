@@ -6,7 +6,7 @@ mod replanned;
 pub use no_effect::{Ignored, Ordered};
 pub use replanned::Replanned;
 
-use crate::serial::Mode;
+use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
@@ -84,6 +84,13 @@ pub enum What {
     },
     /// All drives of the line talk in another mode now, and the line goes with them.
     Moved(Mode),
+    /// The port of the master is set to something else than the line, or no longer.
+    Port {
+        /// How both are set.
+        port: PortSettings,
+        /// Does the line understand it?
+        heard: bool,
+    },
     /// A TCP stream that could not be followed and was closed.
     Lost(BadHeader),
     /// A fault rule did something to a request or its reply.
@@ -119,6 +126,29 @@ pub enum What {
         /// What.
         change: Change,
     },
+}
+
+/// How the port of a master is set, and the line behind it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PortSettings {
+    /// Bits per second of the master's port.
+    pub baud: u32,
+    /// Its stop bits, 1 or 2.
+    pub stop_bits: u8,
+    /// How the line is set.
+    pub line: Settings,
+}
+
+impl PortSettings {
+    /// Do they talk at one speed?
+    pub fn same_baud(self) -> bool {
+        self.baud == self.line.baud
+    }
+
+    /// Are they the same, as far as can be seen?
+    pub fn fits(self) -> bool {
+        self.same_baud() && self.stop_bits == self.line.format.stop_bits
+    }
 }
 
 /// Number of a remark on its bus, from 0.

@@ -66,7 +66,7 @@ impl Chance {
 }
 
 /// FNV-1a, 64 bits.
-fn fnv1a(text: &str) -> u64 {
+pub(crate) fn fnv1a(text: &str) -> u64 {
     let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(1_099_511_628_211);
     text.bytes().fold(14_695_981_039_346_656_037, step)
 }

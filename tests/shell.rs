@@ -3,11 +3,15 @@
 mod clients;
 mod command_line;
 mod determinism;
+mod links;
 mod masters;
 mod paths;
 mod ports;
 mod program;
 mod scenario;
+mod sessions;
+mod speed;
+mod stall;
 mod state;
 mod streams;
 mod virtual_time;

@@ -177,6 +177,7 @@ impl Reader<'_> {
             ("settings", raw.settings.is_some()),
             ("ascii", raw.ascii.is_some()),
             ("strict", raw.strict),
+            ("match_baud", raw.match_baud),
             ("pacing", raw.pacing != RawPacing::Ideal),
             ("chunk", raw.chunk.is_some()),
             ("echo", raw.echo),
@@ -185,6 +186,8 @@ impl Reader<'_> {
         for (key, _) in given.into_iter().filter(|(_, given)| *given) {
             let why = match (port, raw.ascii) {
                 (PortSpec::Tcp(_), _) => "in Modbus TCP",
+                (PortSpec::Pty(_), _) if key == "match_baud" => continue,
+                _ if key == "match_baud" => "on a port that is no pseudo-terminal",
                 (_, Some(true)) if key == "strict" => "in ASCII framing",
                 _ => continue,
             };
@@ -195,7 +198,11 @@ impl Reader<'_> {
 
     fn port_taken(&mut self, line: &BenchLine, lines: &[BenchLine], path: &Path) {
         let Some(place) = line.port.place().filter(|place| !place.ends_with(":0")) else { return };
-        if let Some(other) = lines.iter().find(|it| it.port.place() == Some(place)) {
+        let same = |it: &str| match line.port {
+            PortSpec::Pty(_) | PortSpec::Serial(_) => spelt(it).eq(spelt(place)),
+            PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => it == place,
+        };
+        if let Some(other) = lines.iter().find(|it| it.port.place().is_some_and(same)) {
             let what = format!("line `{}` has the same port", other.name);
             self.problems.push(Problem::value(path.key(line.port.key()), what));
         }
@@ -281,6 +288,7 @@ impl Reader<'_> {
             }
         };
         let wire = WireSpec::of(&devices, settings, raw.ascii, raw.strict);
+        let wire = WireSpec { match_baud: raw.match_baud, ..wire };
         let told = settings.is_some() || raw.ascii.is_some();
         if !matches!(port, PortSpec::Tcp(_)) {
             for (i, device) in devices.iter_mut().enumerate() {
@@ -326,6 +334,12 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// The parts of a path, however it is spelt; `..` stays, since only a file system knows where it leads.
+fn spelt(path: &str) -> impl Iterator<Item = std::path::Component<'_>> {
+    let parts = std::path::Path::new(path).components();
+    parts.filter(|it| *it != std::path::Component::CurDir)
 }
 
 /// What the options of the drive at `path` make of its model, which is fine without them.

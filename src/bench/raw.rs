@@ -39,11 +39,15 @@ pub struct RawBenchLine {
     /// End RTU frames by silence alone, as the standard says, instead of closing a complete one at once.
     #[serde(default)]
     pub strict: bool,
+    /// Only with `pty`: carry nothing while the master's port is set to another baud than the line, as a wire does.
+    /// Default: the log tells of it, and all bytes pass.
+    #[serde(default)]
+    pub match_baud: bool,
     /// When replies leave; default `ideal`.
     #[serde(default)]
     pub pacing: RawPacing,
-    /// The latency timer of a USB adapter, `16ms`: it hands over 62 bytes at once, and fewer when so much time
-    /// has passed since the first of them. Default: there is no adapter.
+    /// The latency timer of a USB adapter, `16ms`: it hands over 62 bytes at once, and fewer whenever that
+    /// timer ends, which runs freely. Default: there is no adapter.
     pub chunk: Option<String>,
     /// The master hears what it says, as on a 2-wire line whose receiver stays on.
     #[serde(default)]
@@ -181,6 +185,7 @@ pub const KEYS: &[&str] = &[
     "index",
     "lines",
     "machine",
+    "match_baud",
     "model",
     "ms",
     "name",

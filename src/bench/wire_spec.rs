@@ -15,6 +15,8 @@ pub struct WireSpec {
     pub strict: bool,
     /// Characters of silence that end a frame.
     pub silence: f64,
+    /// A pseudo-terminal carries nothing while the master's port is set to another speed than the line.
+    pub match_baud: bool,
 }
 
 /// Silence that a patient line waits for at least where the CRC does not fit: schedulers and USB adapters stretch a pause inside a
@@ -44,6 +46,7 @@ impl WireSpec {
             },
             strict,
             silence: first.map_or(3.5, |device| device.model.line.silence),
+            match_baud: false,
         }
     }
 

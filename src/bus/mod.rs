@@ -15,6 +15,7 @@ mod held;
 mod others;
 mod outlet;
 mod output;
+mod port;
 mod unheard;
 mod weather;
 
@@ -148,9 +149,24 @@ impl Bus {
 
     /// Closes a link. What was half received on it is forgotten, and what was to be sent on it.
     pub fn close(&mut self, link: LinkId) {
+        self.forget_replies(link);
+        self.links.remove(&link);
+    }
+
+    /// Forgets what was to be sent on a link: whoever asked for it has left, and another master is there.
+    pub fn forget_replies(&mut self, link: LinkId) {
         self.held.forget(link);
         self.leaving.forget(link);
-        self.links.remove(&link);
+    }
+
+    /// Closes a link whose master has gone: what it said last has ended, as if by silence, and nobody hears the
+    /// answer.
+    pub fn hang_up(&mut self, now: Instant, link: LinkId) {
+        self.advance_to(now);
+        if let Some(silence) = self.silence_at(link) {
+            self.listen(link, silence);
+        }
+        self.close(link);
     }
 
     /// The drives, in the order in which they were added.
@@ -266,6 +282,16 @@ impl Bus {
     /// When silence will end what was half received on `link`.
     pub fn silence_at(&self, link: LinkId) -> Option<Instant> {
         self.links.get(&link)?.line.deadline()
+    }
+
+    /// Is what was received on `link` so far a whole frame that only waits for silence?
+    pub fn is_whole(&self, link: LinkId) -> bool {
+        self.links.get(&link).is_some_and(|it| it.line.waits_for_silence_only())
+    }
+
+    /// When something happens next in a drive by itself.
+    pub fn drives_at(&self) -> Option<Instant> {
+        self.agenda.first().map(|(at, _)| at)
     }
 
     /// When to come back at the latest, and why.

@@ -87,6 +87,10 @@ pub struct RunArgs {
     /// Emulated seconds per wall second
     #[arg(long, value_name = "X", default_value_t = 1.0)]
     pub rate: f64,
+    /// A pseudo-terminal that carries nothing while the master's port is set to another baud than the
+    /// line, as a wire does
+    #[arg(long)]
+    pub match_baud: bool,
     /// When replies leave: at once, or no earlier than character times and the drive's reply delay allow
     #[arg(long, value_name = "ideal|line", default_value = "ideal")]
     pub pacing: PacingArg,

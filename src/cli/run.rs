@@ -212,6 +212,7 @@ fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
         ("--parity", args.parity.is_some()),
         ("--stop-bits", args.stop_bits.is_some()),
         ("--set", !args.set.is_empty()),
+        ("--match-baud", args.match_baud),
         ("--pacing", args.pacing == PacingArg::Line),
     ];
     match flags.iter().find(|(_, given)| *given) {
@@ -274,7 +275,11 @@ fn line(
     let ascii = args.ascii.then_some(true);
     let own = WireSpec::of(std::slice::from_ref(&device), None, ascii, false);
     let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
-    let wire = WireSpec { mode, ..own };
+    let wire = WireSpec { mode, match_baud: args.match_baud, ..own };
+    if args.match_baud && !matches!(port, PortSpec::Pty(_)) {
+        let text = "--match-baud: only a pseudo-terminal carries bytes at the wrong speed";
+        return Err(Failure::invalid(text));
+    }
     if !matches!(port, PortSpec::Tcp(_)) {
         let told = args.ascii || mode != own.mode;
         match_line(&mut device, wire.mode, told).map_err(Failure::invalid)?;

@@ -61,6 +61,16 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why)}))
         }
         What::Moved(mode) => ("line_moved", json!({"mode": mode.to_string()})),
+        What::Port { port, heard } => (
+            "port_settings",
+            json!({
+                "baud": port.baud,
+                "stop_bits": port.stop_bits,
+                "line": port.line.to_string(),
+                "fits": port.fits(),
+                "heard": heard,
+            }),
+        ),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
         What::Fault { rule, unit, mishap, hit } => {
             let (name, kind) = bus.faults().told(*rule);

@@ -60,6 +60,14 @@ fn what(what: &What, bus: &Bus) -> String {
             format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(head))
         }
         What::Moved(mode) => format!("the line is {mode} from now on"),
+        What::Port { port, heard } => {
+            let (baud, stop_bits, why) = (port.baud, port.stop_bits, why::port(*port, *heard));
+            let bits = if stop_bits == 1 { "bit" } else { "bits" };
+            format!(
+                "the master's port is set to {baud} baud and {stop_bits} stop {bits}, the line to {}: {why}",
+                port.line
+            )
+        }
         What::Lost(why) => format!("stream closed, {}", why::header(*why)),
         What::Fault { rule, unit, mishap, hit } => {
             let (name, _) = bus.faults().told(*rule);

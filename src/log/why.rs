@@ -2,6 +2,7 @@
 
 use super::rows::label;
 use crate::drive::Drive;
+use crate::event::PortSettings;
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
@@ -49,12 +50,23 @@ pub fn chain_step(why: Option<Condition>) -> &'static str {
 }
 
 /// Why bytes are no frame.
-pub fn noise(why: NoiseCause) -> &'static str {
+pub fn noise(why: NoiseCause) -> String {
     match why {
-        NoiseCause::TooShort => "too short for a frame",
-        NoiseCause::TooLong => "too long for a frame",
-        NoiseCause::OutsideFrame => "outside a frame",
-        NoiseCause::Unfinished => "a frame that was not finished",
+        NoiseCause::TooShort => "too short for a frame".into(),
+        NoiseCause::TooLong => "too long for a frame".into(),
+        NoiseCause::OutsideFrame => "outside a frame".into(),
+        NoiseCause::Speed(baud) => format!("sent at {baud} baud"),
+        NoiseCause::Unfinished => "a frame that was not finished".into(),
+    }
+}
+
+/// What comes of the settings of a master's port.
+pub fn port(port: PortSettings, heard: bool) -> &'static str {
+    match heard {
+        _ if port.fits() => "as it should be",
+        false => "nothing passes until they agree",
+        true if port.same_baud() => "most receivers take that",
+        true => "a wire would carry nothing, this pseudo-terminal does",
     }
 }
 

@@ -10,6 +10,7 @@ mod diagnostics;
 mod input;
 mod library;
 mod logger;
+mod mark;
 mod outputs;
 pub mod port;
 mod ready;

@@ -5,6 +5,7 @@
 
 use super::destination::{Destination, Written};
 use super::logger::Logger;
+use super::mark::Mark;
 use super::ready::Ready;
 use super::run::{RunError, RunOptions};
 use super::serve::held;
@@ -21,6 +22,8 @@ pub struct Outputs {
     /// Where drives keep what they store, shared by all lines.
     pub store: Option<Arc<Mutex<Store>>>,
     ready: Option<(Destination, Option<Written>)>,
+    /// Keeps other runs from the ready file.
+    _mark: Option<Mark>,
 }
 
 impl Outputs {
@@ -31,6 +34,11 @@ impl Outputs {
     /// What the file system says.
     pub fn open(options: &mut RunOptions, names: bool) -> Result<Self, RunError> {
         let report = options.play.as_ref().and_then(|play| play.junit.as_ref());
+        let ready_file = options.ready_file.as_ref().map(Destination::path);
+        let mark = match ready_file {
+            Some(path) => written(path, Mark::file(path))?,
+            None => None,
+        };
         for old in options.ready_file.iter().chain(report) {
             written(old.path(), old.forget())?;
         }
@@ -39,7 +47,7 @@ impl Outputs {
         let log = log.map_err(|error| RunError::File(path.to_owned(), error))?;
         let store = options.store.take().map(|store| Arc::new(Mutex::new(store)));
         let ready = options.ready_file.take().map(|ready| (ready, None));
-        Ok(Self { log: Arc::new(Mutex::new(log)), store, ready })
+        Ok(Self { log: Arc::new(Mutex::new(log)), store, ready, _mark: mark })
     }
 
     /// Every port is open: says so to whoever waits for the ready file, for whom the state file is there by then.
@@ -98,6 +106,6 @@ pub fn report(destination: &Destination, text: &str) -> Result<(), RunError> {
 }
 
 /// A file of the run was written, or the run has failed.
-fn written(path: &Path, result: io::Result<()>) -> Result<(), RunError> {
+fn written<T>(path: &Path, result: io::Result<T>) -> Result<T, RunError> {
     result.map_err(|error| RunError::File(path.to_owned(), error))
 }

@@ -14,6 +14,7 @@ use super::stage::Stage;
 use super::store::Store;
 use crate::bench::WireSpec;
 use crate::bus::{Bus, LinkId, Output};
+use crate::event::PortSettings;
 use crate::line::Framing;
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
@@ -167,16 +168,46 @@ impl Served {
         }
     }
 
+    /// Takes bytes from `link` that were sent at `baud`, which is not the speed of the line.
+    fn receive_unheard(&mut self, link: LinkId, bytes: &[u8], baud: u32) {
+        self.advance();
+        self.bus.receive_unheard(self.clock.now(), link, bytes, baud);
+    }
+
+    /// Tells how the port of the master is set.
+    fn tell_port(&mut self, port: PortSettings, heard: bool) {
+        self.bus.tell_port(self.bus.now(), port, heard);
+    }
+
+    /// Does a pseudo-terminal carry only what is sent at the speed of the line?
+    fn matches_baud(&self) -> bool {
+        matches!(self.frames, Frames::Serial(wire) if wire.match_baud)
+    }
+
+    /// The master of `link` has gone.
+    fn hang_up(&mut self, link: LinkId) {
+        self.bus.hang_up(self.clock.now(), link);
+        if let Some(stage) = &self.stage {
+            stage.look(&mut self.bus);
+        }
+    }
+
     /// The time at which input arrived on `link` that was just read.
     ///
-    /// Input that waited while this process was kept from running is older than it looks; it came before
-    /// the silence that nobody has heard yet.
+    /// Input that waited while this process was kept from running is older than it looks: it came before the silence
+    /// that nobody has heard yet, and before whatever else is overdue, a watchdog or a step of a scenario.
     fn arrival(&self, link: LinkId) -> Instant {
         let now = self.clock.now();
-        match self.bus.silence_at(link) {
-            Some(at) if at <= now => at - Duration::from_nanos(1),
-            _ => now,
-        }
+        let silence = self.bus.silence_at(link);
+        // A frame that is whole ended there; what has come since is another.
+        let (ended, unfinished) = match self.bus.is_whole(link) {
+            true => (silence, None),
+            false => (None, silence),
+        };
+        let step = self.stage.as_ref().and_then(Stage::poll_at);
+        let overdue = [unfinished, self.bus.drives_at(), step].into_iter().flatten();
+        let arrived = overdue.min().map_or(now, |at| now.min(at - Duration::from_nanos(1)));
+        ended.filter(|at| *at <= now).map_or(arrived, |at| arrived.max(at))
     }
 }
 

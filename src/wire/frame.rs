@@ -111,6 +111,8 @@ pub enum NoiseCause {
     TooLong,
     /// Not between `:` and CR LF.
     OutsideFrame,
+    /// Sent at so many bits per second, which is not the speed of the line.
+    Speed(u32),
     /// A `:` inside a frame began a new one, or the next character never came.
     Unfinished,
 }

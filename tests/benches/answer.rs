@@ -110,11 +110,11 @@ mod pseudo_terminal {
     }
 
     fn serve_echo() -> PathBuf {
-        serve(|pty| async move {
+        serve(|mut pty| async move {
             let mut buffer = [0; 256];
             loop {
-                let len = pty.read(&mut buffer).await.expect("bytes");
-                pty.write_now(&buffer[..len]).expect("sent");
+                let input = pty.read(&mut buffer).await.expect("bytes");
+                pty.write_now(&buffer[..input.len]).expect("sent");
             }
         })
     }

@@ -89,20 +89,6 @@ fn a_serial_port_is_unplugged_and_comes_back() {
 }
 
 #[test]
-fn a_master_with_another_speed_is_told() {
-    let mut program = Program::run(&[]);
-    let said = program.listen();
-    let port = open(&program.path());
-    let mut settings = rustix::termios::tcgetattr(&port).expect("a terminal");
-    settings.set_speed(9600).expect("a speed");
-    rustix::termios::tcsetattr(&port, rustix::termios::OptionalActions::Now, &settings)
-        .expect("set");
-    let mut port = port;
-    ask(&mut port);
-    program.wait_until_said(&said, "the master has set 9600 baud");
-}
-
-#[test]
 fn a_log_that_nobody_reads_stops_nobody() {
     // Stdout is a pipe that this test does not read: 64 KiB, then it is full.
     let program = Program::run(&[]);

@@ -14,7 +14,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 pub struct Program {
     child: Child,
     /// Everything that this run writes lies in here, and goes with it.
-    _folder: TempDir,
+    folder: TempDir,
     ready: Value,
 }
 
@@ -38,7 +38,7 @@ impl Program {
         });
         let ready = std::fs::read_to_string(&ready_file).expect("the ready file");
         let ready = serde_json::from_str(&ready).expect("JSON, whole");
-        Self { child, _folder: folder, ready }
+        Self { child, folder, ready }
     }
 
     /// The ready file.
@@ -57,11 +57,26 @@ impl Program {
         addr.parse().expect("host and port")
     }
 
+    /// Where it runs, and what it writes there.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// The number of its process.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Sends it a signal.
+    pub fn signal(&self, signal: &str) {
+        let pid = self.child.id().to_string();
+        let sent = Command::new("kill").args([&format!("-{signal}"), &pid]).status();
+        assert!(sent.expect("kill runs").success());
+    }
+
     /// Ends the run with `signal` and gives back how it ended and what it printed.
     pub fn stop(self, signal: &str) -> (Option<i32>, String, String) {
-        let pid = self.child.id().to_string();
-        let killed = Command::new("kill").args([&format!("-{signal}"), &pid]).status();
-        assert!(killed.expect("kill runs").success());
+        self.signal(signal);
         self.ended()
     }
 

@@ -5,6 +5,7 @@
 //! a backlog of limited size, and a client that lets it fill up is given up.
 
 use std::io::{self, ErrorKind};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -83,6 +84,12 @@ impl Client {
         // Without a writer the connection is broken, and the report of that is on its way.
         let _ = self.backlog.send(rest.to_vec());
         Ok(())
+    }
+}
+
+impl AsFd for Client {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.stream.as_fd()
     }
 }
 

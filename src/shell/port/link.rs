@@ -1,40 +1,53 @@
 //! A symlink that stands for a pseudo-terminal as long as that lives.
 //!
-//! `/dev/pts/7` is another number on every run, so scripts open the link. It replaces a symlink (the
-//! leftover of a run that was killed) and nothing else: a typed path must not cost anybody a file.
+//! `/dev/pts/7` is another number on every run, so scripts open the link. It replaces the leftover of a run that
+//! was killed and nothing else: not the link of a run that is alive, nor one to anything that is still there.
 
 use std::ffi::OsString;
+use std::fs::Metadata;
 use std::io::{self, ErrorKind};
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
 use std::path::{Path, PathBuf};
 
 use super::said;
+use super::tuning::is_pseudo_terminal;
+use crate::shell::mark::Mark;
+
+/// A terminal that is so much younger than a link, in seconds, is not the one that the link was made for.
+const YOUNGER: i64 = 1;
 
 /// A symlink of ours; gone when this is dropped.
 #[derive(Debug)]
 pub(super) struct Link {
     at: PathBuf,
     target: PathBuf,
+    /// Device and number of the symlink itself.
+    identity: Option<(u64, u64)>,
+    _mark: Mark,
 }
 
 impl Link {
     /// Makes `at` a symlink to `target`.
     ///
     /// # Errors
-    /// `AlreadyExists` when something other than a symlink is there, `NotFound` or `NotADirectory`
-    /// when its directory is not.
+    /// `ResourceBusy` when a living run has it, or it leads to something that is there; `AlreadyExists` when something
+    /// other than a symlink is there, `NotFound` or `NotADirectory` when its directory is not.
     pub(super) fn create(at: &Path, target: &Path) -> io::Result<Self> {
         // Absolute, so that dropping it finds it from any working directory.
         let absolute = std::path::absolute(at)?;
-        // The plain call can't replace anything, whatever happens between a look and an act.
-        match symlink(target, at) {
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => replace(at, target),
-            other => other,
-        }
-        .map_err(|e| {
+        let made = Mark::take(at).and_then(|mark| {
+            // The plain call can't replace anything, whatever happens between a look and an act.
+            match symlink(target, at) {
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => replace(at, target)?,
+                other => other?,
+            }
+            Ok(mark)
+        });
+        let mark = made.map_err(|e| {
             said(e.kind(), format!("cannot create the link {}: {}", at.display(), why(at, &e)))
         })?;
-        Ok(Self { at: absolute, target: target.to_owned() })
+        let identity = identity(at);
+        Ok(Self { at: absolute, target: target.to_owned(), identity, _mark: mark })
     }
 
     /// Where the link is, as an absolute path.
@@ -45,26 +58,56 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // Another run may have replaced it by its own.
-        if std::fs::read_link(&self.at).is_ok_and(|target| target == self.target) {
+        // Somebody may have replaced it.
+        let is_ours = std::fs::read_link(&self.at).is_ok_and(|target| target == self.target)
+            && identity(&self.at) == self.identity;
+        if is_ours {
             // Nobody is left to tell, and a leftover link is replaced by the next run.
             let _ = std::fs::remove_file(&self.at);
         }
     }
 }
 
-/// Replaces a symlink in one step: at no time is there none, and who opens it gets the old or the new.
+fn identity(at: &Path) -> Option<(u64, u64)> {
+    at.symlink_metadata().ok().map(|link| (link.dev(), link.ino()))
+}
+
+/// Replaces a leftover symlink in one step: at no time is there none, and who opens it gets the old or the new.
 fn replace(at: &Path, target: &Path) -> io::Result<()> {
-    if !at.symlink_metadata()?.is_symlink() {
-        return Err(said(
-            ErrorKind::AlreadyExists,
-            "exists and is not a symlink: will not replace it",
-        ));
+    let link = at.symlink_metadata()?;
+    if !link.is_symlink() {
+        let what = "exists and is not a symlink: will not replace it";
+        return Err(said(ErrorKind::AlreadyExists, what));
+    }
+    match std::fs::metadata(at) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Ok(found) if is_leftover(at, &link, &found, target) => {}
+        Ok(_) => {
+            let target = std::fs::canonicalize(at)?;
+            let use_of =
+                if is_pseudo_terminal(&target.to_string_lossy()) { "is in use" } else { "exists" };
+            let what =
+                format!("leads to {}, which {use_of}: will not replace it", target.display());
+            return Err(said(ErrorKind::ResourceBusy, what));
+        }
+        Err(error) => return Err(error),
     }
     let beside = symlink_beside(at, target)?;
     std::fs::rename(&beside, at).inspect_err(|_| {
         let _ = std::fs::remove_file(&beside);
     })
+}
+
+/// Was `link` left by a killed run, though there is something at its end? Terminals are numbered anew: it may lead to
+/// our own, or to one that was opened after the link was made.
+fn is_leftover(at: &Path, link: &Metadata, found: &Metadata, target: &Path) -> bool {
+    let ours = std::fs::metadata(target);
+    if ours.is_ok_and(|ours| (ours.dev(), ours.ino()) == (found.dev(), found.ino())) {
+        return true;
+    }
+    found.file_type().is_char_device()
+        && is_pseudo_terminal(&at.to_string_lossy())
+        && found.ctime() > link.mtime() + YOUNGER
 }
 
 /// Makes the symlink under a free name in the same directory, since a rename can't leave a file system.
@@ -101,6 +144,9 @@ fn why(at: &Path, error: &io::Error) -> String {
 mod tests {
     use super::*;
 
+    /// A terminal that is not there.
+    const GONE: &str = "/dev/pts/gone";
+
     fn target(link: &Path) -> PathBuf {
         std::fs::read_link(link).unwrap()
     }
@@ -111,8 +157,8 @@ mod tests {
         let at = dir.path().join("cell.tty");
         symlink("/dev/pts/leftover", &at).unwrap();
 
-        let link = Link::create(&at, Path::new("/dev/pts/4")).unwrap();
-        assert_eq!(target(&at), Path::new("/dev/pts/4"));
+        let link = Link::create(&at, Path::new(GONE)).unwrap();
+        assert_eq!(target(&at), Path::new(GONE));
         assert_eq!(link.at(), at);
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1, "the temporary link is gone");
 
@@ -120,39 +166,92 @@ mod tests {
         assert!(!at.is_symlink());
     }
 
-    #[test]
-    fn replaces_a_link_to_a_directory_and_not_what_is_in_it() {
+    /// The number of a terminal of a killed run was given to another program, or to us.
+    #[tokio::test]
+    async fn a_leftover_link_to_a_number_that_was_given_anew_is_replaced() {
+        use rustix::fs::{AtFlags, CWD, Timespec, Timestamps, utimensat};
+        let dir = tempfile::tempdir().unwrap();
+        let at = dir.path().join("cell.tty");
+        let pty = super::super::Pty::open(None).unwrap();
+        let terminal = pty.path().to_owned();
+        symlink(&terminal, &at).unwrap();
+        drop(Link::create(&at, &terminal).unwrap());
+        symlink(&terminal, &at).unwrap();
+        Link::create(&at, Path::new(GONE)).unwrap_err();
+        let then = Timespec { tv_sec: 1_000_000_000, tv_nsec: 0 };
+        let times = Timestamps { last_access: then, last_modification: then };
+        utimensat(CWD, &at, &times, AtFlags::SYMLINK_NOFOLLOW).unwrap();
+        let _link = Link::create(&at, Path::new(GONE)).unwrap();
+        assert_eq!(target(&at), Path::new(GONE));
+    }
+
+    #[tokio::test]
+    async fn refuses_to_replace_a_link_to_something_that_is_there() {
         let dir = tempfile::tempdir().unwrap();
         let (inside, at) = (dir.path().join("inside"), dir.path().join("cell.tty"));
         std::fs::create_dir(&inside).unwrap();
-        symlink(&inside, &at).unwrap();
-        let _link = Link::create(&at, Path::new("/dev/pts/4")).unwrap();
-        assert_eq!(target(&at), Path::new("/dev/pts/4"));
+        let file = dir.path().join("notes.txt");
+        std::fs::write(&file, "precious").unwrap();
+        let pty = super::super::Pty::open(None).unwrap();
+        let terminal = pty.path().to_owned();
+        for (there, says) in [
+            (&*inside, "exists"),
+            (&*file, "exists"),
+            (Path::new("/dev/null"), "exists"),
+            (&*terminal, "is in use"),
+        ] {
+            symlink(there, &at).unwrap();
+            let refused = Link::create(&at, Path::new(GONE)).unwrap_err();
+            assert_eq!(refused.kind(), ErrorKind::ResourceBusy, "{refused}");
+            assert!(
+                refused.to_string().ends_with(&format!("{says}: will not replace it")),
+                "{refused}"
+            );
+            assert_eq!(target(&at), there);
+            std::fs::remove_file(&at).unwrap();
+        }
         assert_eq!(std::fs::read_dir(&inside).unwrap().count(), 0);
     }
 
+    #[cfg(target_os = "linux")]
     #[test]
-    fn leaves_the_link_of_a_later_run_alone() {
+    fn refuses_the_link_of_a_living_run_in_whatever_spelling() {
         let dir = tempfile::tempdir().unwrap();
         let at = dir.path().join("cell.tty");
-        let first = Link::create(&at, Path::new("/dev/pts/4")).unwrap();
-        let second = Link::create(&at, Path::new("/dev/pts/5")).unwrap();
-        drop(first);
-        assert_eq!(target(&at), Path::new("/dev/pts/5"));
-        drop(second);
-        assert!(!at.is_symlink());
+        let _link = Link::create(&at, Path::new(GONE)).unwrap();
+        for again in [&at, &dir.path().join("./cell.tty"), &dir.path().join("../").join(&at)] {
+            let refused = Link::create(again, Path::new("/dev/pts/gone-2")).unwrap_err();
+            assert_eq!(refused.kind(), ErrorKind::ResourceBusy);
+            assert!(refused.to_string().ends_with("a running drivemu has it"), "{refused}");
+        }
+        assert_eq!(target(&at), Path::new(GONE));
+    }
+
+    #[test]
+    fn leaves_alone_what_somebody_else_has_put_there() {
+        let dir = tempfile::tempdir().unwrap();
+        let (at, aside) = (dir.path().join("cell.tty"), dir.path().join("aside"));
+        for other in ["/dev/pts/gone-2", GONE] {
+            let link = Link::create(&at, Path::new(GONE)).unwrap();
+            // Kept, or its number could be given to the next.
+            std::fs::rename(&at, &aside).unwrap();
+            symlink(other, &at).unwrap();
+            drop(link);
+            assert_eq!(target(&at), Path::new(other));
+            std::fs::remove_file(&at).unwrap();
+        }
     }
 
     #[test]
     fn a_leftover_temporary_name_is_in_nobodys_way() {
         let dir = tempfile::tempdir().unwrap();
         let at = dir.path().join("cell.tty");
-        symlink("/dev/pts/1", &at).unwrap();
+        symlink(GONE, &at).unwrap();
         // What a run with our process number, killed before its rename, leaves behind.
-        let leftover = symlink_beside(&at, Path::new("/dev/pts/1")).unwrap();
-        let _link = Link::create(&at, Path::new("/dev/pts/4")).unwrap();
-        assert_eq!(target(&at), Path::new("/dev/pts/4"));
-        assert_eq!(target(&leftover), Path::new("/dev/pts/1"));
+        let leftover = symlink_beside(&at, Path::new(GONE)).unwrap();
+        let _link = Link::create(&at, Path::new("/dev/pts/gone-2")).unwrap();
+        assert_eq!(target(&at), Path::new("/dev/pts/gone-2"));
+        assert_eq!(target(&leftover), Path::new(GONE));
     }
 
     #[test]
@@ -162,7 +261,7 @@ mod tests {
         std::fs::write(&file, "precious").unwrap();
         std::fs::create_dir(&sub).unwrap();
         for at in [&file, &sub] {
-            let refused = Link::create(at, Path::new("/dev/pts/4")).unwrap_err();
+            let refused = Link::create(at, Path::new(GONE)).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::AlreadyExists);
             assert_eq!(
                 refused.to_string(),
@@ -179,12 +278,12 @@ mod tests {
     fn a_missing_directory_is_named() {
         let dir = tempfile::tempdir().unwrap();
         let missing = dir.path().join("missing");
-        let refused = Link::create(&missing.join("a.tty"), Path::new("/dev/pts/4")).unwrap_err();
+        let refused = Link::create(&missing.join("a.tty"), Path::new(GONE)).unwrap_err();
         assert_eq!(refused.kind(), ErrorKind::NotFound);
         assert!(refused.to_string().ends_with(&format!("no directory {}", missing.display())));
 
         std::fs::write(&missing, "").unwrap();
-        let refused = Link::create(&missing.join("a.tty"), Path::new("/dev/pts/4")).unwrap_err();
+        let refused = Link::create(&missing.join("a.tty"), Path::new(GONE)).unwrap_err();
         assert!(refused.to_string().ends_with("is not a directory"), "{refused}");
     }
 }

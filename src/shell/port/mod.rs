@@ -33,26 +33,47 @@ pub enum Tty {
     Serial(Serial),
 }
 
+/// What was read from a terminal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Input {
+    /// Bytes; at least one, unless somebody has left or nothing was there.
+    pub len: usize,
+    /// Have all programs left the other end?
+    pub left: Left,
+}
+
+/// When the last program has closed a terminal, if it has. A real port does not tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Left {
+    /// It has not.
+    #[default]
+    Nobody,
+    /// Before these bytes, which are of the next program.
+    Before,
+    /// Nobody is there now, and all that was sent has been read.
+    After,
+}
+
 impl Tty {
-    /// Waits for bytes; at least one arrives. Cancel-safe.
+    /// Waits for bytes, or for the last program to leave. Cancel-safe.
     ///
     /// # Errors
     /// `NotConnected` when a serial port was unplugged; a pseudo-terminal of ours can't be.
-    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
         match self {
             Self::Pty(pty) => pty.read(buf).await,
-            Self::Serial(serial) => serial.read(buf).await,
+            Self::Serial(serial) => serial.read(buf).await.map(Input::bytes),
         }
     }
 
-    /// Takes what is waiting now; 0 means nothing is.
+    /// Takes what is waiting now; 0 bytes means nothing is.
     ///
     /// # Errors
     /// As for [`Tty::read`].
-    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
         match self {
             Self::Pty(pty) => pty.try_read(buf),
-            Self::Serial(serial) => serial.try_read(buf),
+            Self::Serial(serial) => serial.try_read(buf).map(Input::bytes),
         }
     }
 
@@ -65,6 +86,12 @@ impl Tty {
             Self::Pty(pty) => pty.write_now(bytes),
             Self::Serial(serial) => serial.write_now(bytes),
         }
+    }
+}
+
+impl Input {
+    fn bytes(len: usize) -> Self {
+        Self { len, left: Left::Nobody }
     }
 }
 

@@ -6,8 +6,8 @@
 //!
 //! It holds its own descriptor of the side that programs open. Otherwise the first program to close it
 //! would hang up the line, and reading would fail until another one came. The price: the kernel never sees
-//! a *last* close, so it discards nothing that a program left unread and, as long as we don't see to it,
-//! frees no lock that a killed program had put on the terminal.
+//! a *last* close, so it discards nothing that a program left unread and frees no lock that a killed program
+//! had put on the terminal. [`Presence`] counts who is there, so that we can do both.
 
 use std::ffi::OsString;
 use std::future::pending;
@@ -19,11 +19,17 @@ use std::path::{Path, PathBuf};
 use rustix::fs::{Mode, OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::io::{Errno, FdFlags, fcntl_setfd, retry_on_intr};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{ControlModes, OptionalActions, ioctl_tiocnxcl, tcgetattr, tcsetattr};
+use rustix::termios::{
+    ControlModes, OptionalActions, QueueSelector, ioctl_tiocnxcl, tcflush, tcgetattr, tcsetattr,
+};
 use tokio::io::unix::AsyncFd;
+use tracing::warn;
 
 use super::link::Link;
-use super::{is_hang_up, said};
+use super::{Input, Left, is_hang_up, said};
+use presence::{Presence, Since};
+
+mod presence;
 
 /// A pseudo-terminal, open at both ends.
 #[derive(Debug)]
@@ -33,6 +39,10 @@ pub struct Pty {
     master: AsyncFd<OwnedFd>,
     slave: OwnedFd,
     path: PathBuf,
+    /// Who has it open; `None` where the system does not tell.
+    presence: Option<Presence>,
+    /// The last program has left, and something that it sent may still be waiting; then its leaving is not told yet.
+    deserted: bool,
 }
 
 impl Pty {
@@ -47,8 +57,13 @@ impl Pty {
     pub fn open(link: Option<&Path>) -> io::Result<Self> {
         let (master, slave, path) = open_pair()
             .map_err(|e| said(e.kind(), format!("cannot open a pseudo-terminal: {e}")))?;
+        // Before anybody can know of it.
+        let presence = Presence::watch(&path).inspect_err(|error| {
+            warn!("{}: can't see when a program closes it: {error}", path.display());
+        });
         let link = link.map(|at| Link::create(at, &path)).transpose()?;
-        Ok(Self { link, master: watch(master)?, slave, path })
+        let (master, presence) = (watch(master)?, presence.ok());
+        Ok(Self { link, master, slave, path, presence, deserted: false })
     }
 
     /// The device that programs open, such as `/dev/pts/3`.
@@ -61,36 +76,83 @@ impl Pty {
         self.link.as_ref().map(Link::at)
     }
 
-    /// Waits for bytes; at least one arrives, unless `buf` is empty. Cancel-safe.
+    /// Waits for bytes, or for the last program to close it. Cancel-safe.
     ///
     /// # Errors
     /// What the system says, never a hang-up.
-    pub async fn read(&self, buf: &mut [u8]) -> io::Result<usize> {
+    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
         if buf.is_empty() {
-            return Ok(0);
+            return Ok(Input::default());
         }
         loop {
-            let mut ready = self.master.readable().await?;
-            match ready.try_io(|master| Ok(read(master.as_fd(), buf)?)) {
-                Ok(Ok(count)) if count > 0 => {
-                    self.unlock();
-                    return Ok(count);
+            if self.deserted {
+                return self.try_read(buf);
+            }
+            let len = tokio::select! {
+                biased;
+                ready = self.master.readable() => {
+                    match ready?.try_io(|master| Ok(read(master.as_fd(), buf)?)) {
+                        Ok(Ok(len)) if len > 0 => len,
+                        Ok(Err(e)) if !is_hang_up(&e) => return Err(e),
+                        // Can't be while we hold the slave. If a system thinks otherwise, the line is as good as
+                        // idle, and asking again would only burn the processor: readiness stays set after a hang-up.
+                        Ok(_) => pending().await,
+                        Err(_would_block) => continue,
+                    }
                 }
-                Ok(Err(e)) if !is_hang_up(&e) => return Err(e),
-                // Can't be while we hold the slave. If a system thinks otherwise, the line is as good as
-                // idle, and asking again would only burn the processor: readiness stays set after a hang-up.
-                Ok(_) => pending().await,
-                Err(_would_block) => {}
+                changed = changes(self.presence.as_ref()) => {
+                    changed?;
+                    or_nothing(read(self.master.as_fd(), buf))?
+                }
+            };
+            let input = self.told(len);
+            if input != Input::default() {
+                return Ok(input);
             }
         }
     }
 
-    /// Takes what is waiting now; 0 means nothing is.
+    /// Takes what is waiting now; 0 bytes means nothing is.
     ///
     /// # Errors
     /// As for [`Pty::read`].
-    pub fn try_read(&self, buf: &mut [u8]) -> io::Result<usize> {
-        or_nothing(read(self.master.as_fd(), buf))
+    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
+        let len = or_nothing(read(self.master.as_fd(), buf))?;
+        Ok(self.told(len))
+    }
+
+    /// Has a program it open, as far as can be told?
+    pub fn is_open_elsewhere(&self) -> bool {
+        self.presence.as_ref().is_none_or(Presence::is_anybody_there)
+    }
+
+    /// `len` bytes were read, all that is there if 0: who has left before or behind them?
+    fn told(&mut self, len: usize) -> Input {
+        let Some(presence) = &mut self.presence else {
+            if len > 0 {
+                self.unlock();
+            }
+            return Input { len, left: Left::Nobody };
+        };
+        // Looked at behind the bytes, so that what was sent before a close is read before it is told.
+        let since = presence.look();
+        let present = presence.is_anybody_there();
+        self.deserted |= since != Since::Same || len > 0 && !present;
+        let left = match self.deserted {
+            // Nobody can tell any more which of the bytes are whose; none is lost.
+            true if present => Left::Before,
+            true if len == 0 => Left::After,
+            _ => Left::Nobody,
+        };
+        if left != Left::Nobody {
+            self.deserted = false;
+            // Answers to those who have left; the next program has asked nothing yet that was answered.
+            let _ = tcflush(&self.slave, QueueSelector::IFlush);
+        }
+        if left == Left::After {
+            self.unlock();
+        }
+        Input { len, left }
     }
 
     /// Sends an answer in one write and says how many of its bytes were taken.
@@ -129,12 +191,19 @@ impl Pty {
         Ok(tcsetattr(&self.slave, OptionalActions::Now, &termios)?)
     }
 
-    /// Lets the next program in, should the present one be killed.
+    /// Lets the next program in, should the last one have been killed with the terminal locked (`TIOCEXCL`).
     ///
-    /// Some programs open a port exclusively (`TIOCEXCL`) and leave it to the last close to end that. There
-    /// is no last close here, and without root the next open would fail as busy until we are restarted.
+    /// It leaves that to the last close, which never comes here, and without root every open would fail as busy.
     fn unlock(&self) {
         let _ = ioctl_tiocnxcl(&self.slave);
+    }
+}
+
+/// Waits for notices; for ever where there are none.
+async fn changes(presence: Option<&Presence>) -> io::Result<()> {
+    match presence {
+        Some(presence) => presence.changes().await,
+        None => pending().await,
     }
 }
 

@@ -192,7 +192,7 @@ mod tests {
 
     #[tokio::test]
     async fn passes_every_byte_untouched_both_ways() {
-        let (pty, mut serial) = pair();
+        let (mut pty, mut serial) = pair();
         let all: Vec<u8> = (0..=255).collect();
         assert_eq!(pty.write_now(&all).unwrap(), 256);
         let mut got = Vec::new();
@@ -207,8 +207,8 @@ mod tests {
         let mut buf = [0; 300];
         let mut got = Vec::new();
         while got.len() < all.len() {
-            let count = timeout(Duration::from_secs(2), pty.read(&mut buf)).await.unwrap().unwrap();
-            got.extend_from_slice(&buf[..count]);
+            let input = timeout(Duration::from_secs(2), pty.read(&mut buf)).await.unwrap().unwrap();
+            got.extend_from_slice(&buf[..input.len]);
         }
         assert_eq!(got, all);
         assert_eq!(serial.unsent().unwrap(), 0);

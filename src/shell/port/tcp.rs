@@ -10,7 +10,10 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, ErrorKind};
 use std::net::SocketAddr;
+use std::os::fd::AsFd;
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::retry_on_intr;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
@@ -120,6 +123,19 @@ impl Listener {
                 return event;
             }
         }
+    }
+
+    /// Has something arrived of which [`Listener::next`] has not told yet?
+    pub fn is_anything_waiting(&self) -> bool {
+        let socket = self.accepting.then(|| self.socket.as_fd());
+        let clients = self.clients.values().map(Client::as_fd);
+        let watched = socket.into_iter().chain(clients);
+        let mut watched: Vec<_> =
+            watched.map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN)).collect();
+        let now = Timespec { tv_sec: 0, tv_nsec: 0 };
+        !self.untold.is_empty()
+            || !self.reports.is_empty()
+            || retry_on_intr(|| poll(&mut watched, Some(&now))).is_ok_and(|ready| ready > 0)
     }
 
     /// Sends an answer to a client: one write, if the connection takes it. Never waits. To a client that

@@ -35,7 +35,11 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
         let event = tokio::select! {
             biased;
             event = listener.next() => Some(event),
-            () = line.woken() => None,
+            // After a stall the timer may be told first; what was sent meanwhile came before that.
+            () = line.woken() => match listener.is_anything_waiting() {
+                true => Some(listener.next().await),
+                false => None,
+            },
             () = Clock::until_wall(rested), if rested.is_some() => {
                 rested = None;
                 listener.accept_again();
@@ -57,7 +61,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
                 }
             }
             Some(TcpEvent::Closed(id, error)) => {
-                clients.remove(id).into_iter().for_each(|link| line.bus.close(link));
+                clients.remove(id).into_iter().for_each(|link| line.hang_up(link));
                 match error {
                     Some(error) => warn!("{}: a client is gone: {error}", line.name),
                     None => info!("{}: a client has left", line.name),
@@ -71,7 +75,7 @@ pub async fn serve_tcp(mut line: Served, mut listener: Listener) {
                 }
             }
             Some(TcpEvent::Displaced(id)) => {
-                clients.remove(id).into_iter().for_each(|link| line.bus.close(link));
+                clients.remove(id).into_iter().for_each(|link| line.hang_up(link));
                 if clients.displaced == 0 {
                     warn!(
                         "{}: {MAX_CLIENTS} clients are connected, which is the limit: each new one displaces \

@@ -1,12 +1,16 @@
 //! Serves a line on a terminal: a pseudo-terminal of ours, or a serial port that may go and come back.
 
+mod watch;
+
 use super::{Send, Served};
+use crate::bus::LinkId;
 use crate::serial::Settings;
 use crate::shell::clock::Clock;
-use crate::shell::port::Tty;
+use crate::shell::port::{Input, Left, Tty};
 use crate::time::Duration;
 use std::io::{self, ErrorKind};
 use tracing::{info, warn};
+use watch::Watch;
 
 /// Opens the port again after it was lost, with the line's present settings.
 pub type Reopen = Box<dyn Fn(Settings) -> io::Result<Tty>>;
@@ -32,10 +36,10 @@ pub async fn serve_tty(mut line: Served, mut tty: Tty, reopen: Reopen) {
 }
 
 async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Error {
-    let link = line.bus.open(line.framing());
+    let mut link = line.bus.open(line.framing());
     let mut buffer = [0; 1024];
     let error = loop {
-        if let Err(error) = send_all(line, tty, watch).await {
+        if let Err(error) = send_all(line, link, tty, watch).await {
             break error;
         }
         let read = tokio::select! {
@@ -43,13 +47,26 @@ async fn serve_until_lost(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -
             read = tty.read(&mut buffer) => read,
             () = line.woken() => tty.try_read(&mut buffer),
         };
-        match read {
-            Ok(0) => line.advance(),
-            Ok(len) => {
-                watch.look(line, tty);
-                line.receive(link, &buffer[..len]);
-            }
+        let Input { len, left } = match read {
+            Ok(input) => input,
             Err(error) => break error,
+        };
+        if left == Left::Before {
+            // Not a link of its own: the rest of a frame may have come with its first bytes.
+            line.bus.forget_replies(link);
+            watch.left();
+        }
+        match &buffer[..len] {
+            [] => line.advance(),
+            bytes => match watch.look(line, tty) {
+                None => line.receive(link, bytes),
+                Some(theirs) => line.receive_unheard(link, bytes, theirs),
+            },
+        }
+        if left == Left::After {
+            line.hang_up(link);
+            watch.left();
+            link = line.bus.open(line.framing());
         }
     };
     line.bus.close(link);
@@ -74,12 +91,20 @@ async fn wait_for(line: &mut Served, reopen: &Reopen) -> Tty {
     }
 }
 
-async fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Result<()> {
+/// Sends what there is for the master of `link`; what is for one that has left is dropped.
+async fn send_all(
+    line: &mut Served,
+    link: LinkId,
+    tty: &mut Tty,
+    watch: &mut Watch,
+) -> io::Result<()> {
     while let Some(send) = line.next_send() {
         match send {
-            Send::Frame(_, frame) => {
-                let taken = tty.write_now(&frame)?;
-                watch.sent(line, taken, frame.len());
+            Send::Frame(to, frame) => {
+                if to == link && watch.carries(line, tty) {
+                    let taken = tty.write_now(&frame)?;
+                    watch.sent(line, taken, frame.len());
+                }
             }
             Send::Move(mode) => retune(tty, mode.settings).await?,
             // Only a TCP stream can be lost.
@@ -92,6 +117,8 @@ async fn send_all(line: &mut Served, tty: &mut Tty, watch: &mut Watch) -> io::Re
 /// Moves the port to other settings, once the answer in the old ones has left.
 async fn retune(tty: &mut Tty, Settings { baud, format }: Settings) -> io::Result<()> {
     match tty {
+        // The port of a program that has it open stays as that has set it, which may be wrong from now on.
+        Tty::Pty(pty) if pty.is_open_elsewhere() => Ok(()),
         // Only what others see of it; bytes pass all the same.
         Tty::Pty(pty) => {
             let _ = pty.preset(baud, format.stop_bits);
@@ -107,43 +134,5 @@ async fn retune(tty: &mut Tty, Settings { baud, format }: Settings) -> io::Resul
             serial.note().into_iter().for_each(|note| warn!("{note}"));
             Ok(())
         }
-    }
-}
-
-/// What can be seen of the program at the other end.
-#[derive(Default)]
-struct Watch {
-    /// Settings of the other end that were told already.
-    told: Option<(u32, u8)>,
-    /// The other end has stopped reading.
-    deaf: bool,
-}
-
-impl Watch {
-    /// Tells, once, if the other end is set to something that no wire would carry.
-    fn look(&mut self, line: &Served, tty: &Tty) {
-        let Tty::Pty(pty) = tty else { return };
-        let Ok(theirs) = pty.master_settings() else { return };
-        if self.told == Some(theirs) {
-            return;
-        }
-        self.told = Some(theirs);
-        let (baud, stop_bits) = theirs;
-        let settings = line.settings();
-        let Settings { baud: ours, format } = settings;
-        if baud != ours || stop_bits != format.stop_bits {
-            warn!(
-                "{}: the master has set {baud} baud and {stop_bits} stop bit(s), the line is {}; \
-                 a pseudo-terminal does not care, a wire would",
-                line.name, settings
-            );
-        }
-    }
-
-    fn sent(&mut self, line: &Served, taken: usize, len: usize) {
-        if taken < len && !self.deaf {
-            warn!("{}: nobody reads the answers; they are lost, as on a wire", line.name);
-        }
-        self.deaf = taken < len;
     }
 }

@@ -4,6 +4,7 @@ use super::*;
 use rustix::termios::ioctl_tiocexcl;
 use std::fs::File;
 use std::io::{Read, Write};
+use std::process::Command;
 use std::time::Duration;
 use tokio::time::timeout;
 
@@ -12,16 +13,45 @@ fn program(path: &Path) -> File {
     rustix::fs::open(path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap().into()
 }
 
-async fn heard(pty: &Pty) -> Vec<u8> {
+async fn input(pty: &mut Pty) -> (Vec<u8>, Left) {
     let mut buf = [0; 300];
-    let count = timeout(Duration::from_secs(2), pty.read(&mut buf)).await.unwrap().unwrap();
-    buf[..count].to_vec()
+    let read = timeout(Duration::from_secs(2), pty.read(&mut buf)).await;
+    let Input { len, left } = read.unwrap().unwrap();
+    (buf[..len].to_vec(), left)
 }
 
-async fn is_silent(pty: &Pty) -> bool {
+/// Bytes of a program that is still there.
+async fn heard(pty: &mut Pty) -> Vec<u8> {
+    let (bytes, left) = input(pty).await;
+    assert_eq!(left, Left::Nobody);
+    bytes
+}
+
+/// The last program has left, and nothing else has come.
+async fn is_deserted(pty: &mut Pty) {
+    assert_eq!(input(pty).await, (Vec::new(), Left::After));
+}
+
+async fn is_silent(pty: &mut Pty) -> bool {
     let mut buf = [0; 300];
     // A hang-up or an echo would come at once; 20 ms of silence shows that neither did.
     timeout(Duration::from_millis(20), pty.read(&mut buf)).await.is_err()
+}
+
+/// May a program without special rights open it? Root opens a locked terminal all the same, so it gives that up.
+fn may_open(pty: &Pty) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let mut command = match std::fs::metadata("/proc/self").unwrap().uid() {
+        0 => Command::new("setpriv"),
+        _ => Command::new("env"),
+    };
+    if command.get_program() == "setpriv" {
+        command.args(["--bounding-set=-sys_admin", "--inh-caps=-sys_admin"]);
+    }
+    let done = command.args(["sh", "-c", ": <> $0"]).arg(pty.path()).output().expect("it runs");
+    let says = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success() || says.contains("busy"), "{says}");
+    done.status.success()
 }
 
 fn takes(mut program: &File, count: usize) -> Vec<u8> {
@@ -32,58 +62,165 @@ fn takes(mut program: &File, count: usize) -> Vec<u8> {
 
 #[tokio::test]
 async fn passes_every_byte_untouched_and_echoes_nothing() {
-    let pty = Pty::open(None).unwrap();
+    let mut pty = Pty::open(None).unwrap();
     let mut program = program(pty.path());
     let all: Vec<u8> = (0..=255).collect();
 
     program.write_all(&all).unwrap();
     let mut got = Vec::new();
     while got.len() < all.len() {
-        got.extend(heard(&pty).await);
+        got.extend(heard(&mut pty).await);
     }
     assert_eq!(got, all);
 
     assert_eq!(pty.write_now(&all).unwrap(), all.len());
     assert_eq!(takes(&program, all.len()), all);
-    assert!(is_silent(&pty).await, "an answer must not come back to us");
+    assert!(is_silent(&mut pty).await, "an answer must not come back to us");
 }
 
 #[tokio::test]
 async fn a_program_may_close_and_another_open() {
-    let pty = Pty::open(None).unwrap();
+    let mut pty = Pty::open(None).unwrap();
     drop(program(pty.path()));
-    // While we wait, so that a hang-up would be seen.
-    let reopen = async {
-        assert!(is_silent(&pty).await);
-        program(pty.path()).write_all(b"two").unwrap();
-    };
-    let (heard, ()) = tokio::join!(heard(&pty), reopen);
-    assert_eq!(heard, b"two");
+    is_deserted(&mut pty).await;
+    assert!(is_silent(&mut pty).await, "a hang-up is told once");
+    program(pty.path()).write_all(b"two").unwrap();
+    assert_eq!(heard(&mut pty).await, b"two");
+    is_deserted(&mut pty).await;
+    assert!(is_silent(&mut pty).await);
 }
 
-/// Shows its worth without root only: root opens a locked terminal all the same.
 #[tokio::test]
-async fn a_program_killed_with_the_port_locked_does_not_lock_out_the_next() {
-    let pty = Pty::open(None).unwrap();
-    let mut killed = program(pty.path());
-    ioctl_tiocexcl(&killed).unwrap();
-    killed.write_all(b"x").unwrap();
-    assert_eq!(heard(&pty).await, b"x");
-    drop(killed);
-    program(pty.path());
+async fn leaving_wakes_a_read_that_waits() {
+    let mut pty = Pty::open(None).unwrap();
+    let path = pty.path().to_owned();
+    let leaves = async {
+        drop(program(&path));
+    };
+    let ((), ()) = tokio::join!(is_deserted(&mut pty), leaves);
+}
+
+/// Of several programs the last counts, however quickly they come and go.
+#[tokio::test]
+async fn the_last_of_several_counts() {
+    let mut pty = Pty::open(None).unwrap();
+    for count in [1, 2, 5, 40] {
+        let mut programs: Vec<_> = (0..count).map(|_| program(pty.path())).collect();
+        assert!(is_silent(&mut pty).await);
+        assert!(pty.is_open_elsewhere());
+        let mut last = programs.pop().unwrap();
+        drop(programs);
+        assert!(is_silent(&mut pty).await, "one of {count} is still there");
+        last.write_all(b"x").unwrap();
+        assert_eq!(heard(&mut pty).await, b"x");
+        drop(last);
+        is_deserted(&mut pty).await;
+        assert!(!pty.is_open_elsewhere());
+    }
+}
+
+/// Another program has come before anybody looked: what was read is its own.
+#[tokio::test]
+async fn the_next_program_may_be_there_already() {
+    let mut pty = Pty::open(None).unwrap();
+    let first = program(pty.path());
+    assert!(is_silent(&mut pty).await);
+    assert_eq!(pty.write_now(b"old").unwrap(), 3);
+    drop(first);
+    let mut second = program(pty.path());
+    second.write_all(b"new").unwrap();
+    assert_eq!(input(&mut pty).await, (b"new".to_vec(), Left::Before));
+    assert_eq!(rustix::io::ioctl_fionread(&second).unwrap(), 0, "nothing old waits for it");
+    assert!(is_silent(&mut pty).await);
+}
+
+#[tokio::test]
+async fn what_was_left_unread_is_gone_with_the_last_program() {
+    let mut pty = Pty::open(None).unwrap();
+    let (first, second) = (program(pty.path()), program(pty.path()));
+    assert_eq!(pty.write_now(b"old").unwrap(), 3);
+    drop(first);
+    assert!(is_silent(&mut pty).await);
+    assert_eq!(takes(&second, 1), b"o", "it is of this one, too");
+    drop(second);
+    is_deserted(&mut pty).await;
+    let next = program(pty.path());
+    assert_eq!(rustix::io::ioctl_fionread(&next).unwrap(), 0);
+    assert_eq!(pty.write_now(b"new").unwrap(), 3);
+    assert_eq!(takes(&next, 3), b"new");
+}
+
+/// What a program has sent before it left is told before that, in as many reads as it takes.
+#[tokio::test]
+async fn all_that_was_sent_comes_before_the_end() {
+    let mut pty = Pty::open(None).unwrap();
+    for len in [1, 299, 300, 301, 600, 900] {
+        program(pty.path()).write_all(&vec![7; len]).unwrap();
+        let mut got = 0;
+        loop {
+            let (bytes, left) = input(&mut pty).await;
+            got += bytes.len();
+            if left == Left::After {
+                break;
+            }
+        }
+        assert_eq!(got, len);
+        assert!(is_silent(&mut pty).await);
+    }
+}
+
+/// A program that has come while much of the last one was still unread loses nothing.
+#[tokio::test]
+async fn the_next_program_may_come_while_much_is_unread() {
+    let mut pty = Pty::open(None).unwrap();
+    program(pty.path()).write_all(&[7; 400]).unwrap();
+    assert_eq!(input(&mut pty).await, (vec![7; 300], Left::Nobody));
+    let mut second = program(pty.path());
+    second.write_all(b"new").unwrap();
+    let (mut got, mut before) = (Vec::new(), 0);
+    while !got.ends_with(b"new") {
+        let (bytes, left) = input(&mut pty).await;
+        before += usize::from(left == Left::Before);
+        got.extend(bytes);
+    }
+    assert_eq!((got.len(), before), (103, 1));
+    assert!(is_silent(&mut pty).await);
+}
+
+/// A lock holds as long as its holder lives, whatever passes, and no longer, even if nothing has passed.
+#[tokio::test]
+async fn a_lock_lives_as_long_as_its_holder() {
+    let mut pty = Pty::open(None).unwrap();
+    for sends in [true, false] {
+        let mut holder = program(pty.path());
+        ioctl_tiocexcl(&holder).unwrap();
+        if sends {
+            holder.write_all(b"x").unwrap();
+            assert_eq!(heard(&mut pty).await, b"x");
+        }
+        assert!(is_silent(&mut pty).await);
+        assert!(!may_open(&pty), "the holder lives");
+        // As by a kill: nothing is undone.
+        drop(holder);
+        is_deserted(&mut pty).await;
+        assert!(may_open(&pty), "nobody holds it any more");
+        is_deserted(&mut pty).await;
+    }
 }
 
 #[tokio::test]
 async fn tells_what_is_waiting_now() {
-    let pty = Pty::open(None).unwrap();
+    let mut pty = Pty::open(None).unwrap();
     let mut buf = [0; 8];
-    assert_eq!(pty.try_read(&mut buf).unwrap(), 0);
-    program(pty.path()).write_all(b"abc").unwrap();
+    let none = Input::default();
+    assert_eq!(pty.try_read(&mut buf).unwrap(), none);
+    let mut program = program(pty.path());
+    program.write_all(b"abc").unwrap();
     pty.master.readable().await.unwrap().retain_ready();
-    assert_eq!(pty.try_read(&mut buf).unwrap(), 3);
-    assert_eq!(pty.try_read(&mut buf).unwrap(), 0);
-    assert_eq!(pty.read(&mut []).await.unwrap(), 0);
-    assert!(is_silent(&pty).await);
+    assert_eq!(pty.try_read(&mut buf).unwrap(), Input { len: 3, left: Left::Nobody });
+    assert_eq!(pty.try_read(&mut buf).unwrap(), none);
+    assert_eq!(pty.read(&mut []).await.unwrap(), none);
+    assert!(is_silent(&mut pty).await);
 }
 
 #[tokio::test]
@@ -121,11 +258,11 @@ async fn shows_what_the_program_has_set() {
 async fn is_open_under_its_link_as_long_as_it_lives() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path().join("cell.tty");
-    let pty = Pty::open(Some(&at)).unwrap();
+    let mut pty = Pty::open(Some(&at)).unwrap();
     assert_eq!(pty.link(), Some(at.as_path()));
     assert_eq!(std::fs::read_link(&at).unwrap(), pty.path());
     program(&at).write_all(b"hi").unwrap();
-    assert_eq!(heard(&pty).await, b"hi");
+    assert_eq!(heard(&mut pty).await, b"hi");
     drop(pty);
     assert!(!at.is_symlink());
 }
