@@ -15,6 +15,17 @@ fn open(program: &Program) -> File {
     OpenOptions::new().read(true).write(true).open(program.path()).expect("the terminal opens")
 }
 
+/// Opens it once what the last program left is gone. Opens it anew each time: a child that another test has just
+/// started keeps our files open for a moment, and so long the last program has not left.
+fn open_clean(program: &Program) -> File {
+    let mut clean = None;
+    wait_for("a clean terminal", || {
+        clean = Some(open(program)).filter(|port| waiting(port) == 0);
+        clean.is_some()
+    });
+    clean.expect("just opened")
+}
+
 fn send(port: &mut File, (request, _): (&str, &str)) {
     port.write_all(&hex(request).expect("hex")).expect("written");
 }
@@ -45,8 +56,7 @@ fn an_unread_answer_goes_with_the_program_that_asked() {
         send(&mut first, OLD);
         wait_for("the answer", || waiting(&first) == 7);
         drop(first);
-        let mut second = open(&program);
-        wait_for("a clean terminal", || waiting(&second) == 0);
+        let mut second = open_clean(&program);
         asks(&mut second, NEW);
         assert_eq!(waiting(&second), 0);
     }
@@ -94,8 +104,7 @@ fn what_is_held_back_goes_too() {
         send(&mut first, OLD);
         wait_for("the request", || read_to_string(log).expect("a log").contains("0x0023"));
         drop(first);
-        let mut second = open(&program);
-        wait_for("a clean terminal", || waiting(&second) == 0);
+        let mut second = open_clean(&program);
         asks(&mut second, NEW);
         stays_silent(&second);
     }
