@@ -72,12 +72,12 @@ fn a_link_that_is_no_longer_ours_stays() {
 fn two_lines_of_a_bench_do_not_share_a_link() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = |link: &str| format!("{{pty: {link}, drives: [{{model: hcfa-x}}]}}");
-    for (second, code) in [("./a.tty", 2), ("sub/../a.tty", 3)] {
+    for second in ["./a.tty", "sub/../a.tty"] {
         std::fs::create_dir_all(folder.path().join("sub")).expect("made");
         let bench = format!("lines: [{}, {}]", line("a.tty"), line(second));
         std::fs::write(folder.path().join("bench.yaml"), bench).expect("written");
         let (got, _, stderr) = once(folder.path(), &["run", "bench.yaml"]);
-        assert_eq!(got, Some(code), "{stderr}");
+        assert_eq!(got, Some(2), "{stderr}");
         assert!(!folder.path().join("a.tty").is_symlink());
     }
 }

@@ -13,9 +13,6 @@ use super::said;
 use super::tuning::is_pseudo_terminal;
 use crate::shell::mark::Mark;
 
-/// A terminal that is so much younger than a link, in seconds, is not the one that the link was made for.
-const YOUNGER: i64 = 1;
-
 /// A symlink of ours; gone when this is dropped.
 #[derive(Debug)]
 pub(super) struct Link {
@@ -107,7 +104,7 @@ fn is_leftover(at: &Path, link: &Metadata, found: &Metadata, target: &Path) -> b
     }
     found.file_type().is_char_device()
         && is_pseudo_terminal(&at.to_string_lossy())
-        && found.ctime() > link.mtime() + YOUNGER
+        && (found.ctime(), found.ctime_nsec()) > (link.mtime(), link.mtime_nsec())
 }
 
 /// Makes the symlink under a free name in the same directory, since a rename can't leave a file system.
