@@ -12,17 +12,14 @@ impl Drive {
     /// value react to nothing: whoever needs the value reads it.
     pub(super) fn react(&mut self, plan: &WritePlan) {
         let (mut inputs, mut line) = (false, false);
-        for (row, raw) in plan.values() {
+        for (row, _) in plan.values() {
             match self.model.wiring.reaction(row) {
                 Reaction::None | Reaction::Command(_) | Reaction::Trigger(_) => {}
                 Reaction::Inputs => inputs = true,
                 Reaction::InputWord(word) => {
                     inputs = true;
-                    let (time, hold) = (self.hold_time(), &mut self.holds[usize::from(word)]);
-                    match raw {
-                        0 => hold.stop(),
-                        _ => hold.refresh(self.now, time),
-                    }
+                    let time = self.hold_time();
+                    self.holds[usize::from(word)].refresh(self.now, time);
                 }
                 Reaction::Line => line = true,
                 Reaction::Timeout => self.hear(),
@@ -42,15 +39,28 @@ impl Drive {
         self.settle();
         self.tell_not_simulated();
         // Commands act on what the same request has written, so they come last.
+        let mut cleared = false;
         for (row, raw) in plan.values() {
-            match self.model.wiring.reaction(row) {
+            let reaction = self.model.wiring.reaction(row);
+            match reaction {
                 Reaction::Command(index) => self.command(index, row, raw),
                 Reaction::Trigger(index) => self.trigger(index, row, raw),
                 _ => {}
             }
             if self.model.map.row(row).clears {
                 self.bank.set(row, self.at_work(row).unwrap_or(0));
+                cleared |= matches!(reaction, Reaction::Inputs | Reaction::InputWord(_));
             }
+            if let Reaction::InputWord(word) = reaction
+                && self.bank.raw(row) == 0
+            {
+                self.holds[usize::from(word)].stop();
+            }
+        }
+        if cleared {
+            self.explain();
+            // The signals of such a row fall with it, so that the next write is an edge again.
+            self.gather_inputs();
         }
         self.look_at_stored(plan);
         self.explain();

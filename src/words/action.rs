@@ -6,10 +6,10 @@ words! {
     /// Something a drive does at once when told to. Of several at once the one that stands first acts.
     Action {
         QuickStop "quick_stop" "stand at once",
-        Stop "stop" "slow down to a standstill, with the deceleration that was read when the motion started",
+        Stop "stop" "slow down to a standstill, with the deceleration of the motion",
         HomeStart "home_start" "look for the origin; ignored while the axis moves",
-        MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set",
-        RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; ignored while the axis moves",
+        MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set; that breaks off a homing too",
+        RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; a run under way takes the new speed, a move only with `interrupt`; ignored in any other motion",
         Enable "enable" "switch the power stage on",
         Release "release" "switch the power stage off; it stays off until told otherwise",
         AlarmReset "alarm_reset" "clear an alarm whose cause is gone, if a reset can clear it",
@@ -27,7 +27,7 @@ words! {
     /// What a bit beside those that trigger says about the action.
     Modifier {
         Absolute "absolute" "`move.target` is a position, not a way",
-        Interrupt "interrupt" "a move takes the place of a motion under way",
+        Interrupt "interrupt" "a move takes the place of a motion under way, or a run that of a move",
     }
 }
 

@@ -24,7 +24,7 @@ words! {
         MoveStart "move_start" "rising edge: go `move.target` counts on, or with `move.absolute` to that position; ignored while the axis moves, but a run by `run_start` goes over into a move from where it is",
         SegmentStart "segment_start" "rising edge: start the position segment that `select_0` to `select_3` select; ignored while the axis moves, but a velocity segment that an edge started goes over into a move from where it is",
         SegmentStep "segment_step" "rising edge: condition `step` of a chain",
-        SegmentRun "segment_run" "go at the velocity segment that the selection says when this rises; while active, or where `trigger` is `edge`, until stopped",
+        SegmentRun "segment_run" "go at the velocity segment that is selected, while active; where `trigger` is `edge`, at the one selected when this rises, until stopped",
         SegmentReverse "segment_reverse" "level: velocity segments run in the opposite direction",
         Pause "pause" "level: a move slows down to a standstill and goes on to its target when this falls; one that starts meanwhile waits for that",
         ClearDeviation "clear_deviation" "level: what the axis is behind its command is dropped: it stands where it is, a move under way is over, and none starts while active",

@@ -1,9 +1,9 @@
-//! Tables in docs/drives that are made from the models: alarms and outputs.
+//! Tables in docs/drives that are made from the models: alarms, outputs, and when settings count.
 
 use crate::expect::{read, root, same};
 use crate::kit::{MODELS, text_of};
 use drivemu::model::builtin::Builtin;
-use drivemu::model::{AlarmStop, Choices, Model, Row, Shown, Shows};
+use drivemu::model::{AlarmStop, Applies, Choices, Model, Row, Shown, Shows};
 use drivemu::words::{Action, AlarmCause, Input, Output, Threshold, Word};
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -24,6 +24,7 @@ fn the_tables_of_each_drive_are_up_to_date() {
         let (_, after) = rest.split_once(END).expect("a mark where they end");
         let tables = alarms(&model, &file["alarms"])
             + &outputs(&model, &file["quantities"])
+            + &settings(&model)
             + &not_simulated(&model);
         let page = format!("{before}{BEGIN}{tables}\n{END}{after}");
         bad.extend(same(&path, &page, "UPDATE_DOCS").err());
@@ -115,6 +116,39 @@ fn not_simulated(model: &Model) -> String {
     for label in labels {
         writeln!(out, "- {label}").expect("a string");
     }
+    out
+}
+
+/// When a value counts that a master writes; of segments the first stands for all.
+fn settings(model: &Model) -> String {
+    let mut out = String::from(
+        "\n## When settings count\n\n| row | name | effect time printed | counts |\n|---|---|---|---|\n",
+    );
+    let axis = &model.wiring.axis;
+    let rules: Vec<_> = axis.segments.rules().collect();
+    let (mut told, mut rows) = (Vec::new(), Vec::new());
+    let settings: Vec<_> = axis.all_settings().map(|it| it.row).collect();
+    for (id, row) in model.map.rows() {
+        let counts = model.counts(id);
+        // Rows of segments have the number of the segment in their names.
+        let name: String = row.name.chars().filter(|c| !c.is_ascii_digit()).collect();
+        let of_segments = settings.contains(&id) && told.contains(&name);
+        if counts.is_empty() || of_segments || rules.contains(&id) {
+            continue;
+        }
+        told.push(name);
+        let printed = match row.applies {
+            None => "",
+            Some(Applies::Now) => "immediately",
+            Some(Applies::AtStop) => "at a stop",
+            Some(Applies::PowerOn) => "at power-on",
+        };
+        let counts: Vec<_> =
+            counts.iter().map(|(name, taken)| format!("`{name}` {}", taken.name())).collect();
+        rows.push(format!("| {} | {} | {printed} | {} |", code(row), row.name, counts.join(", ")));
+    }
+    out.push_str(&rows.join("\n"));
+    out.push_str("\n\n[What these times mean](../models.md#when-settings-count).\n");
     out
 }
 

@@ -1,6 +1,7 @@
 //! What holds for an axis whatever it is told.
 
 use super::*;
+use crate::behaviour::phase::Replan;
 use crate::motion::Switch;
 use crate::words::Input;
 use proptest::prelude::*;
@@ -16,9 +17,26 @@ const COAST: Duration = Duration::from_millis(200);
 /// Something that happens to an axis.
 #[derive(Debug, Clone, Copy)]
 enum Order {
-    Follow { power: bool, stop: bool, quick_stop: bool, jog: i8 },
-    Move { target: i64, interrupt: bool },
-    Run { speed: f64 },
+    Follow {
+        power: bool,
+        stop: bool,
+        quick_stop: bool,
+        jog: i8,
+    },
+    Move {
+        target: i64,
+        interrupt: bool,
+    },
+    Run {
+        speed: f64,
+    },
+    /// Settings change on the way.
+    Tune {
+        speed: f64,
+        accel: f64,
+        decel: f64,
+        by: i64,
+    },
     Stop,
     QuickStop,
 }
@@ -38,6 +56,11 @@ fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, Order)>> {
         4 => follow,
         3 => (-3000i64..3000, any::<bool>()).prop_map(|(target, interrupt)| Order::Move { target, interrupt }),
         2 => (-4000.0..4000.0).prop_map(|speed| Order::Run { speed }),
+        3 => (-4000.0..4000.0, 1e3..2e4, 1e4..2e4, -3000i64..3000).prop_map(|(speed, accel, decel, by)| {
+            // Now and then the speed becomes 0.
+            let speed = if f64::abs(speed) < 400.0 { 0.0 } else { speed };
+            Order::Tune { speed, accel, decel, by }
+        }),
         1 => Just(Order::Stop),
         1 => Just(if gentle { Order::Stop } else { Order::QuickStop }),
     ];
@@ -50,6 +73,9 @@ struct Bench {
     wants: Wants,
     now: Instant,
     told: Vec<(Instant, Stage)>,
+    /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
+    jump: f64,
+    tuned: usize,
 }
 
 /// Machines with limits, hard stops, both or neither.
@@ -70,7 +96,8 @@ impl Bench {
     fn new(machine: Machine) -> Self {
         let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
         let wants = Wants { power: true, ..Wants::default() };
-        let mut bench = Self { motor, wants, now: Instant::ZERO, told: Vec::new() };
+        let mut bench =
+            Self { motor, wants, now: Instant::ZERO, told: Vec::new(), jump: 0.0, tuned: 0 };
         bench.follow();
         bench
     }
@@ -128,6 +155,11 @@ impl Bench {
                 self.motor.start_move(now, |here| here + target, HOW, interrupt)
             }
             Order::Run { speed } => self.motor.start_run(now, ramp(speed), false),
+            Order::Tune { speed, accel, decel, by } => {
+                let (accel, decel) = (Slope::Rate(accel), Slope::Rate(decel));
+                self.tune(Ramp { speed, accel, decel, start_speed: 0.0 }, by);
+                Ok(())
+            }
             Order::Stop => {
                 self.motor.stop(now);
                 Ok(())
@@ -139,6 +171,40 @@ impl Bench {
         };
         self.hear();
         self.follow();
+    }
+}
+
+impl Bench {
+    /// The motion under way goes by `ramp`, and ends `by` counts from here if it ends anywhere.
+    fn tune(&mut self, ramp: Ramp, by: i64) {
+        let now = self.now;
+        let states = |motor: &Motor| {
+            [motor.trajectory.state(now), motor.lag.feedback(&motor.trajectory, now)]
+        };
+        let (before, phase) = (states(&self.motor), self.motor.phase());
+        match phase {
+            Phase::Moving => {
+                let target = self.motor.commanded(now) + by;
+                self.motor.retune_move(now, target, ramp);
+            }
+            Phase::Running => self.motor.retune_run(now, ramp),
+            Phase::Stopping => self.motor.retune_stop(now, ramp.decel),
+            // Without a speed a level asks for nothing; turning round is an order.
+            Phase::Jogging { forward } if ramp.speed != 0.0 => {
+                let speed = ramp.speed.abs() * if forward { 1.0 } else { -1.0 };
+                let ramp = Ramp { speed, ..ramp };
+                self.wants.jog = Some(Jog { ramp, takes_over: false, by_position: false });
+                self.follow();
+            }
+            _ => return,
+        }
+        if self.motor.phase() == phase {
+            self.tuned += 1;
+            for (was, is) in before.into_iter().zip(states(&self.motor)) {
+                let jumps = [is.position - was.position, is.speed - was.speed];
+                self.jump = jumps.iter().fold(self.jump, |most, it| most.max(it.abs()));
+            }
+        }
     }
 }
 
@@ -174,6 +240,12 @@ proptest! {
         let often = play(machine, &orders, step, |_| {});
         prop_assert_eq!(seldom.told, often.told);
         prop_assert_eq!(seldom.motor, often.motor);
+    }
+
+    #[test]
+    fn settings_that_change_make_no_jump(machine in machines(), orders in orders(false)) {
+        let bench = play(machine, &orders, u64::MAX / 2, |_| {});
+        prop_assert!(bench.jump < 1e-6, "{}", bench.jump);
     }
 
     #[test]
@@ -234,6 +306,19 @@ proptest! {
         prop_assert_eq!(bench.motor.state(bench.now), place);
         prop_assert_eq!(bench.told.len(), told);
     }
+}
+
+/// The property above would hold for an axis that never follows.
+#[test]
+fn settings_that_change_are_followed() {
+    let mut bench = Bench::new(Machine::default());
+    bench.obey(Order::Run { speed: 1000.0 });
+    bench.advance_to(Instant::from_millis(500));
+    bench.obey(Order::Tune { speed: 2000.0, accel: 1e4, decel: 1e4, by: 0 });
+    bench.advance_to(Instant::from_millis(1000));
+    assert_eq!(bench.motor.state(bench.now).speed, 2000.0);
+    assert_eq!((bench.tuned, bench.jump), (1, 0.0));
+    assert!(bench.told.iter().any(|(_, it)| *it == Stage::Replans(Replan::Speed(2000.0))));
 }
 
 #[test]
