@@ -70,9 +70,9 @@ def test_check_good_files():
 
 def test_check_tells_every_problem_with_its_place(tmp_path):
     good = (REPOSITORY / "models/hcfa-x.yaml").read_text()
-    bad = good.replace(
-        "init: 500, unit: rpm, name: Homing speed high", "init: 5000, unit: rpm, nam: Homing speed high"
-    )
+    bad = good.replace("name: Homing speed high", "nam: Homing speed high")
+    assert bad != good
+    good = bad
     bad = bad.replace("position.actual: P21.07", "position.actual: P21.70")
     assert bad != good
     broken = tmp_path / "broken.yaml"

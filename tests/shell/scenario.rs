@@ -1,6 +1,6 @@
 //! `--scenario` and `--junit` from outside: exit codes, the report, several lines.
 
-use super::program::{Program, file, once};
+use super::program::{Program, file, once, wait_for};
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -95,10 +95,13 @@ fn a_signal_ends_it_and_the_report_is_there() {
     assert_eq!(report.matches("the run has ended before this step").count(), 3, "{report}");
     // One that expects nothing is no test.
     let steps = file(&folder, "play.yaml", "steps: [{name: s, do: [block on]}]");
-    let program = Program::run(&["yako-closed-loop", "--scenario", text(&steps)]);
-    let (code, log, _) = program.stop("TERM");
-    assert_eq!(code, Some(0));
-    assert!(log.contains("step s\n"), "{log}");
+    let log = folder.path().join("log");
+    let more = ["--scenario", text(&steps), "--log-file", text(&log)];
+    let program = Program::run(&[&["yako-closed-loop"], &more[..]].concat());
+    // Ready are the ports; the first step comes when they are served.
+    let step = "\"text\":\"step s\"";
+    wait_for("the step", || fs::read_to_string(&log).is_ok_and(|log| log.contains(step)));
+    assert_eq!(program.stop("TERM").0, Some(0));
 }
 
 #[test]
