@@ -28,9 +28,11 @@ enum Situation {
     Jogging,
     AtLimits,
     Held,
+    /// No command of a move is taken.
+    Inhibited,
 }
 
-const SITUATIONS: [Situation; 10] = [
+const SITUATIONS: [Situation; 11] = [
     Situation::NotReady,
     Situation::Disabled,
     Situation::Off,
@@ -41,6 +43,7 @@ const SITUATIONS: [Situation; 10] = [
     Situation::Jogging,
     Situation::AtLimits,
     Situation::Held,
+    Situation::Inhibited,
 ];
 
 /// An order.
@@ -160,7 +163,7 @@ fn wired(model: &str, situation: Situation, order: Option<Order>) -> Rig {
         spec.set.insert(name.to_owned(), value);
     };
     let own: &[(&str, i64)] = match model {
-        "hcfa-x" => &[("P08.06", 1_000_000), ("P08.88", 1), ("P08.89", 2)],
+        "hcfa-x" => &[("P08.06", 1_000_000), ("P08.86", 1), ("P08.88", 1), ("P08.89", 2)],
         "k-series" => &[("group0_target", 1_000_000), ("group0_speed", 100), ("group0_type", 2)],
         "acme-s1.yaml" => {
             &[("P002", 600), ("P003", 1_000_000), ("S161", 1_000_000), ("P040", 0x1000)]
@@ -304,6 +307,9 @@ fn get_into(rig: &mut Rig, situation: Situation) -> bool {
         Situation::Jogging => by_signal(rig, Input::JogPos) && is(rig, Output::Moving),
         Situation::AtLimits => by_signal(rig, Input::LimitPos) && by_signal(rig, Input::LimitNeg),
         Situation::Held => by_signal(rig, Input::Stop) || by_signal(rig, Input::QuickStop),
+        Situation::Inhibited => {
+            by_signal(rig, Input::CommandInhibit) || by_signal(rig, Input::ClearDeviation)
+        }
         _ => true,
     }
 }

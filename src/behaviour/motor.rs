@@ -254,10 +254,7 @@ impl Motor {
         ramp: Ramp,
         interrupt: bool,
     ) -> Result<(), Ignored> {
-        self.may_start(interrupt)?;
-        if self.wants.commands != Commands::Taken {
-            return Err(Ignored::Inhibited);
-        }
+        self.may_move(interrupt)?;
         let here = self.commanded(now);
         let target = target(here);
         self.may_go(now, target.saturating_sub(here) as f64)?;
@@ -368,6 +365,18 @@ impl Motor {
         }
     }
 
+    /// May a move start right now, or take the place of a motion under way where it may `interrupt`?
+    ///
+    /// # Errors
+    /// Why not: as of [`Self::may_start`], or while its commands are inhibited.
+    pub fn may_move(&self, interrupt: bool) -> Result<(), Ignored> {
+        self.may_start(interrupt)?;
+        match self.wants.commands {
+            Commands::Taken => Ok(()),
+            Commands::Inhibited | Commands::Cleared => Err(Ignored::Inhibited),
+        }
+    }
+
     /// Does a level hold it still?
     fn is_held(&self) -> bool {
         self.wants.stop || self.wants.quick_stop
@@ -438,8 +447,9 @@ impl Motor {
     fn power_off(&mut self, now: Instant) {
         if self.is_moving() && self.phase != Phase::Coasting {
             self.lose_origin(HomeEnd::PowerOff);
+            let rests = self.speed(now) == 0.0;
             self.run_out(now);
-            self.told.push_back(Stage::Coasts);
+            self.told.extend((!rests).then_some(Stage::Coasts));
             self.advance(now);
         }
     }

@@ -33,32 +33,35 @@ impl Drive {
     /// Starts interrupt positioning.
     ///
     /// # Errors
-    /// Why not: a row or a signal forbids it, it is locked, or the axis can't.
+    /// Why not: as of [`Self::may_interrupt`], or the axis can't go that way.
     pub(super) fn start_interrupt(&mut self) -> Result<(), Ignored> {
-        let model = self.model.clone();
-        let Some(interrupt) = &model.wiring.axis.interrupt else { return Err(Ignored::NoMeaning) };
         self.settle_interrupt();
-        match self.interrupt_rule() {
-            None => return Err(Ignored::NoMeaning),
-            Some(InterruptRule::Off) => {
-                let row = interrupt.rule.row().ok_or(Ignored::NoMeaning)?;
-                return Err(Ignored::Starter { row, value: self.bank.value(&model, row) });
-            }
-            Some(InterruptRule::Locks) if self.interrupt.locked => return Err(Ignored::Locked),
-            Some(InterruptRule::Locks | InterruptRule::Free) => {}
-        }
-        if self.inputs.has(Input::InterruptInhibit) {
-            return Err(Ignored::Inhibited);
-        }
-        if self.interrupt.stage == Stage::Active {
-            return Err(Ignored::Moving);
-        }
-        if self.motor.is_homing() {
-            return Err(Ignored::Homing);
-        }
+        self.may_interrupt()?;
         self.go_to(MoveRows::Interrupt, false, true)?;
         self.interrupt.stage = Stage::Active;
         Ok(())
+    }
+
+    /// May interrupt positioning start right now?
+    ///
+    /// # Errors
+    /// Why not: a row or a signal forbids it, it is locked, one is under way, or the axis can't start.
+    pub(super) fn may_interrupt(&self) -> Result<(), Ignored> {
+        let interrupt = self.model.wiring.axis.interrupt.as_ref().ok_or(Ignored::NoMeaning)?;
+        match self.interrupt_rule().ok_or(Ignored::NoMeaning)? {
+            InterruptRule::Off => {
+                let row = interrupt.rule.row().ok_or(Ignored::NoMeaning)?;
+                return Err(Ignored::Starter { row, value: self.bank.value(&self.model, row) });
+            }
+            InterruptRule::Locks if self.interrupt.locked => return Err(Ignored::Locked),
+            InterruptRule::Locks | InterruptRule::Free => {}
+        }
+        match () {
+            () if self.inputs.has(Input::InterruptInhibit) => Err(Ignored::Inhibited),
+            () if self.interrupt.stage == Stage::Active => Err(Ignored::Moving),
+            () if self.motor.is_homing() => Err(Ignored::Homing),
+            () => self.motor.may_move(true),
+        }
     }
 
     /// Sees whether the one under way has come to its end, or was broken off, and whether it is unlocked.

@@ -171,18 +171,16 @@ impl Drive {
     }
 
     fn acts(&self, input: Input) -> Acts {
-        let start = || self.motor.may_start(false).err().map(|why| self.root_of(why));
+        let edge = |may: Result<(), Ignored>| Acts::Edge(may.err().map(|why| self.root_of(why)));
         match input {
             Input::ServoOn => Acts::Level((!self.servo.is_enabled()).then(|| self.servo.why_off())),
-            Input::SegmentRun if self.velocity_lasts() == Some(Lasts::Edge) => Acts::Edge(start()),
+            Input::SegmentRun if self.velocity_lasts() == Some(Lasts::Edge) => {
+                edge(self.motor.may_start(false))
+            }
             Input::HomeStart if !self.may_home_by_input() => Acts::Other,
-            Input::MoveStart | Input::SegmentStart | Input::HomeStart => Acts::Edge(start()),
-            Input::InterruptStart if self.inputs.has(Input::InterruptInhibit) => {
-                Acts::Edge(Some(Ignored::Inhibited))
-            }
-            Input::InterruptStart => {
-                Acts::Edge(self.motor.may_start(true).err().map(|why| self.root_of(why)))
-            }
+            Input::HomeStart => edge(self.motor.may_start(false)),
+            Input::MoveStart | Input::SegmentStart => edge(self.motor.may_move(false)),
+            Input::InterruptStart => edge(self.may_interrupt()),
             Input::AlarmReset => Acts::Edge(self.servo.may_reset().err()),
             _ if asks_for_run(input) => Acts::Level(self.why_no_run(input)),
             _ => Acts::Other,

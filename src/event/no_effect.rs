@@ -200,6 +200,8 @@ impl Ignored {
                 | Self::Held
                 | Self::Moving
                 | Self::Homing
+                | Self::Locked
+                | Self::Starter { .. }
                 | Self::NoAlarm
                 | Self::CauseStands(_)
         )

@@ -32,6 +32,29 @@ fn the_tables_of_each_drive_are_up_to_date() {
     assert!(bad.is_empty(), "{}", bad.join("\n"));
 }
 
+/// The page of each drive has every option with its choices, the default first.
+#[test]
+fn each_option_stands_on_the_page_of_its_drive() {
+    let mut bad = Vec::new();
+    for name in MODELS {
+        let page = read(&root(&format!("docs/drives/{name}.md")));
+        let builtin = Builtin::find(name).expect("embedded");
+        for option in builtin.load(&Choices::new()).expect("valid").options {
+            let start = format!("| `{}` | `{}`", option.name, option.default);
+            let row = page.lines().find(|line| line.starts_with(&start)).unwrap_or_default();
+            let choices = row.split('|').nth(2).unwrap_or_default();
+            let missing = option.choices.iter().find(|it| !choices.contains(&format!("`{it}`")));
+            if let Some(choice) = missing {
+                bad.push(format!(
+                    "{name}: option {} lacks its row, or {choice} there",
+                    option.name
+                ));
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{}", bad.join("\n"));
+}
+
 fn alarms(model: &Model, file: &Value) -> String {
     let mut out = String::from(
         "\n## Alarms\n\n| cause | number | raised when | the axis | cleared by | assumed |\n\
