@@ -3,7 +3,7 @@
 
 use super::Drive;
 use crate::behaviour::Trip;
-use crate::event::Change;
+use crate::event::{Change, Ignored, Ordered};
 use crate::model::AlarmStop;
 use crate::words::{AlarmCause, HomeEnd};
 
@@ -23,6 +23,19 @@ impl Drive {
             self.brake(alarm.stop);
         }
         true
+    }
+
+    /// Trips with `cause` because of `order`, and says so where that has no effect: an alarm is active, and the axis
+    /// stops for it as before. Returns whether the model has an alarm for it.
+    pub(super) fn trip_by(&mut self, cause: AlarmCause, order: Option<Ordered>) -> bool {
+        let (active, braking) = (self.servo.alarm().is_some(), self.servo.is_braking());
+        let tripped = self.trip(cause);
+        if let Some(order) =
+            order.filter(|_| tripped && active && braking == self.servo.is_braking())
+        {
+            self.ignore(order, Ignored::Alarm);
+        }
+        tripped
     }
 
     /// Puts an alarm before those that were raised earlier. The oldest is lost where there is no room.

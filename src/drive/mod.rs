@@ -220,11 +220,7 @@ impl Drive {
     /// Returns whether it has.
     pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
         self.advance_to(now);
-        let had_one = self.servo.alarm().is_some();
-        let tripped = self.trip(cause);
-        if tripped && had_one {
-            self.ignore(Ordered::Raise(cause), Ignored::Alarm);
-        }
+        let tripped = self.trip_by(cause, Some(Ordered::Raise(cause)));
         self.settle();
         self.explain();
         tripped

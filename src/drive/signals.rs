@@ -18,7 +18,8 @@ impl Drive {
         self.look_at_inputs(before);
         self.look_at_what_is_so(risen);
         if now.has(Input::AlarmForce) {
-            self.trip(AlarmCause::Forced);
+            let order = risen.has(Input::AlarmForce).then_some(Ordered::Input(Input::AlarmForce));
+            self.trip_by(AlarmCause::Forced, order);
         }
         self.uphold_causes();
         if risen.has(Input::AlarmReset) {
@@ -46,7 +47,6 @@ impl Drive {
         let so = [
             (Input::ServoOn, enabled.then_some(Ignored::AlreadyOn)),
             (Input::Release, (!enabled).then_some(Ignored::AlreadyOff)),
-            (Input::AlarmForce, self.servo.alarm().map(|_| Ignored::Alarm)),
             (Input::Stop, self.why_no_stop(false)),
             (Input::QuickStop, self.why_no_stop(true)),
             (Input::InterruptUnlock, (!self.can_unlock_interrupt()).then_some(Ignored::NotLocked)),
