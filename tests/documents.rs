@@ -2,7 +2,9 @@
 //!
 //! `UPDATE_DOCS=1 cargo test` writes the generated ones anew.
 
+mod architecture;
 mod drives;
+mod readme;
 
 use crate::expect::{read, root, same};
 use crate::kit::Files;
@@ -29,7 +31,7 @@ fn roles() -> String {
     let mut out = String::from(
         "<!-- Generated from src/words by `UPDATE_DOCS=1 cargo test`; edit there, not here. -->\n\n\
          # Roles\n\n\
-         The words that a model may use, and all that they mean. How to use them: [models.md](models.md).\n",
+         The names that a model may use and what each means. How to use them: [models.md](models.md).\n",
     );
     let inputs = "Signals into the drive: `signals.inputs` wires them to terminals, words and bits. \
                   A signal is active while any of its sources is.";
@@ -57,7 +59,7 @@ fn roles() -> String {
     }
     let taken = "When a value counts that is written to the row of a setting: `taken` in `quantities`, and \
                  `settings_taken`, where the row's `applies` says nothing.";
-    section::<Taken>(&mut out, "Times of settings", taken);
+    section::<Taken>(&mut out, "When settings take effect", taken);
     let thresholds = "Numbers that outputs and an alarm go by, at any time: `quantities` says which row holds each, or \
                       gives a number with its unit.";
     section::<Threshold>(&mut out, "Thresholds", thresholds);
@@ -91,25 +93,21 @@ fn roles() -> String {
 
 /// The words of `homing` and `limits`.
 fn homing(out: &mut String) {
-    section::<Pace>(out, "Paces", "How fast a homing step goes: `at`.");
+    section::<Pace>(out, "Homing speeds", "How fast a homing step goes: `at`.");
     section::<Then>(out, "Ends of steps", "What happens at the end of a homing step: `then`.");
     let starters = "What may start a homing: `homing.starter`.";
-    section::<HomeStarter>(out, "Starters of a homing", starters);
+    section::<HomeStarter>(out, "Homing triggers", starters);
     let limit = "What happens when a limit ends the way of a homing step: `homing.limit`.";
-    section::<LimitRule>(out, "Meanings of a limit", limit);
+    section::<LimitRule>(out, "Limits during a homing", limit);
     let source = "What tells a homing that the axis has come to a limit: `homing.limit_source`.";
-    section::<LimitSource>(out, "Sources of limits", source);
+    section::<LimitSource>(out, "Limit detection", source);
     let index = "How an index pulse refines the origin: `homing.index`.";
     section::<IndexRule>(out, "Uses of the index pulse", index);
-    let stop = "How the axis stands there: `homing.stop`.";
-    section::<OriginStop>(out, "Ways to stand at the origin", stop);
+    let stop = "How the axis stops there: `homing.stop`.";
+    section::<OriginStop>(out, "Stopping at the origin", stop);
     let position = "What the position register says in the end: `position` under `homing.finish`.";
     section::<OriginPosition>(out, "Positions after a homing", position);
-    section::<LimitStop>(
-        out,
-        "Ways to stop at a limit",
-        "How a limit stops the axis: `limits.stop`.",
-    );
+    section::<LimitStop>(out, "Stopping at a limit", "How a limit stops the axis: `limits.stop`.");
     let soft = "When soft limits are in force: `limits.soft`.";
     section::<SoftLimitRule>(out, "Rules for soft limits", soft);
 }

@@ -56,7 +56,7 @@ pub struct RawBenchLine {
     pub chatter: Option<RawChatter>,
     /// The drives.
     pub drives: Vec<RawBenchDrive>,
-    /// Bad weather: fault rules. Of all that hold for a request, the first acts.
+    /// Communication faults: rules. Of all that hold for a request, the first acts.
     #[serde(default)]
     pub faults: Vec<RawFault>,
 }

@@ -15,11 +15,11 @@ pub struct Args {
 pub enum Command {
     /// Emulate drives
     Run(Box<RunArgs>),
-    /// List the built-in models and the products they stand for
+    /// List the built-in models, their products and options
     Models,
-    /// Print a model's register map, or one row of it
+    /// Print a model's register map, or all about one row
     Show(ShowArgs),
-    /// Validate models, benches and scenarios: every problem, with line and caret
+    /// Check model, bench and scenario files: every problem, with line and caret
     Check(CheckArgs),
     /// Print the JSON Schema of a file format, for editors
     Schema(SchemaArgs),
@@ -36,17 +36,17 @@ pub struct RunArgs {
     /// The drive's DIP switches as a number, SW1 being bit 0: its address, and its speed where it has switches for that
     #[arg(long, value_name = "N")]
     pub switches: Option<u8>,
-    /// Own pseudo-terminal; LINK becomes a symlink to it for the run (default)
+    /// A pseudo-terminal (the default); LINK becomes a symlink to it for the run
     #[arg(long, value_name = "LINK", num_args = 0..=1, group = "port")]
     pub pty: Option<Option<PathBuf>>,
     /// A real serial port
     #[arg(long, value_name = "DEVICE", group = "port")]
     pub serial: Option<String>,
-    /// Modbus TCP (MBAP); port 0 picks a free one. Of more than 64 clients at once the one that has
-    /// been silent longest gives way
+    /// Modbus TCP [default ADDR: 127.0.0.1:5020]; port 0 picks a free one. At most 64 clients at once:
+    /// one more disconnects the one that has been silent longest
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:5020", group = "port")]
     pub tcp: Option<String>,
-    /// Serial frames over TCP; as many clients as with --tcp
+    /// RTU or ASCII frames over TCP; as many clients as with --tcp
     #[arg(long, value_name = "ADDR", group = "port")]
     pub rtu_over_tcp: Option<String>,
     /// ASCII framing instead of RTU
@@ -59,7 +59,7 @@ pub struct RunArgs {
     #[arg(short = 'd', long, value_name = "7|8", value_parser = clap::value_parser!(u8).range(7..=8))]
     pub data_bits: Option<u8>,
     /// Parity
-    #[arg(short = 'P', long, value_name = "none|even|odd")]
+    #[arg(short = 'P', long, value_name = "none|even|odd", hide_possible_values = true)]
     pub parity: Option<ParityArg>,
     /// Stop bits
     #[arg(short = 's', long, value_name = "1|2", value_parser = clap::value_parser!(u8).range(1..=2))]
@@ -67,40 +67,41 @@ pub struct RunArgs {
     /// A model option (crc_error=silent) or a register's start value (accel_time=200); repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Keep what drives keep over power-off in FILE, from run to run; --set wins over it
+    /// Keep the non-volatile memory of the drives in FILE from run to run; --set wins over it
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
     /// A fault rule, for every line of a bench: KIND, or KIND:KEY=VALUE,... such as
     /// lose_reply:every=10 (see docs/faults.md); repeatable
     #[arg(long, value_name = "SPEC")]
     pub fault: Vec<String>,
-    /// What happens to drives and lines during the run, and what should come of it (see
-    /// docs/scenarios.md); exit code 1 if something else does
+    /// A timeline of faults, orders and expectations (see docs/scenarios.md); exit code 1 if an
+    /// expectation fails
     #[arg(long, value_name = "FILE")]
     pub scenario: Option<PathBuf>,
-    /// What became of the steps of the scenario, as JUnit XML, written atomically at the end
+    /// The results of the steps of the scenario as JUnit XML, written atomically at the end
     #[arg(long, value_name = "FILE", requires = "scenario")]
     pub junit: Option<PathBuf>,
-    /// Seed of the run, told on stderr and in the ready file (default: drawn)
+    /// Seed of the run, printed on stderr and in the ready file (default: drawn)
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Emulated seconds per wall second
     #[arg(long, value_name = "X", default_value_t = 1.0)]
     pub rate: f64,
-    /// A pseudo-terminal that carries nothing while the master's port is set to another baud than the
-    /// line, as a wire does
+    /// Only with a pseudo-terminal: carry nothing while the master's port is set to another baud rate than
+    /// the line, as a wire does
     #[arg(long)]
     pub match_baud: bool,
-    /// When replies leave: at once, or no earlier than character times and the drive's reply delay allow
-    #[arg(long, value_name = "ideal|line", default_value = "ideal")]
+    /// When replies leave: at once, or no sooner than character times and the drive's reply delay allow
+    #[arg(long, value_name = "ideal|line", hide_possible_values = true, default_value = "ideal")]
     pub pacing: PacingArg,
-    /// Written atomically when every port is open, and removed at the end: one JSON object
+    /// One JSON object with ports and units, written atomically when every port is open and removed at
+    /// the end
     #[arg(long, value_name = "FILE")]
     pub ready_file: Option<PathBuf>,
     /// The event log on stdout: one line per event
-    #[arg(long, value_name = "text|json", default_value = "text")]
+    #[arg(long, value_name = "text|json", hide_possible_values = true, default_value = "text")]
     pub format: LogFormatArg,
-    /// The same log as JSON lines
+    /// Write the event log to FILE as well, as JSON lines
     #[arg(long, value_name = "FILE")]
     pub log_file: Option<PathBuf>,
     /// Only warnings and errors on stderr

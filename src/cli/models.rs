@@ -15,7 +15,7 @@ pub fn models() -> Result<(), Failure> {
         print(&format!("{}{default}\n    {}\n", model.name, model.about))?;
         print(&format!("    manual: {}\n", model.manual))?;
         if !model.products.is_empty() {
-            print(&format!("    stands for: {}\n", model.products.join(", ")))?;
+            print(&format!("    products: {}\n", model.products.join(", ")))?;
         }
         for option in &model.options {
             let choices = option.choices.iter().map(|choice| match *choice == option.default {
@@ -26,5 +26,5 @@ pub fn models() -> Result<(), Failure> {
             print(&format!("    --set {}={choices}\n        {}\n", option.name, option.about))?;
         }
     }
-    Ok(())
+    print("[A choice in brackets] is the default of its option.\n")
 }

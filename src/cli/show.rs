@@ -5,7 +5,8 @@ use super::args::{ShowArgs, TableFormat};
 use super::output::print;
 use drivemu::bench::Library;
 use drivemu::model::{
-    Access, Applies, Choices, Counts, Kind, Model, Number, Reaction, Row, RowId, Shows, load,
+    Access, Applies, Choices, Counts, Kind, Model, Number, Reaction, Row, RowId, Shows, WordOrder,
+    load,
 };
 use drivemu::problem::render::render;
 use drivemu::shell::FileLibrary;
@@ -42,7 +43,7 @@ fn find(model: &Model, name: &str) -> Result<RowId, Failure> {
 
 fn table(model: &Model, rows: &[RowId]) -> String {
     let head =
-        ["address", "row", "type", "access", "range", "init", "unit", "name", "moves", "assumed"];
+        ["address", "row", "type", "access", "range", "init", "unit", "name", "assumed", "effect"];
     let mut lines = vec![head.map(str::to_owned)];
     for id in rows {
         let row = model.map.row(*id);
@@ -51,12 +52,12 @@ fn table(model: &Model, rows: &[RowId]) -> String {
             row.id.clone(),
             kind(row.kind).into(),
             access(row.access).into(),
-            row.range_text(),
+            shortened(&row.range_text(), 24),
             row.kind.value(row.init).to_string(),
             row.unit_text.clone(),
             row.name.clone(),
-            wired(model, *id).unwrap_or_else(|| "-".into()),
             if row.assumed.is_empty() { String::new() } else { "yes".into() },
+            shortened(&wired(model, *id).unwrap_or_else(|| inert(row).into()), 48),
         ]);
     }
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max();
@@ -70,9 +71,25 @@ fn table(model: &Model, rows: &[RowId]) -> String {
     out
 }
 
+/// As many whole items of a list as fit into `most` characters; a row by itself shows all of them.
+fn shortened(list: &str, most: usize) -> String {
+    if list.chars().count() <= most {
+        return list.to_owned();
+    }
+    let mut short = String::new();
+    for item in list.split(", ") {
+        if short.chars().count() + item.chars().count() + ", ...".len() > most {
+            break;
+        }
+        short.push_str(item);
+        short.push_str(", ");
+    }
+    short + "..."
+}
+
 fn markdown(model: &Model, rows: &[RowId]) -> String {
     let mut out = String::from(
-        "| address | row | name | 中文 | type | access | range | init | unit | applies | counts | section | wired to | assumed |\n\
+        "| address | row | name | 中文 | type | access | range | init | unit | applies | taken | section | effect | assumed |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for id in rows {
@@ -114,13 +131,10 @@ fn card(model: &Model, id: RowId) -> String {
     line("init", &row.kind.value(row.init).to_string());
     line("unit", &row.unit_text);
     line("applies", applies(row.applies));
-    line("counts", &counts(model, id));
+    line("taken", &counts(model, id));
     line("kept", &kept(model, row));
     line("section", &format!("{} ({})", row.see, model.manual));
-    line(
-        "wired to",
-        wired(model, id).as_deref().unwrap_or("nothing: stored and read back (sim: none)"),
-    );
+    line("effect", wired(model, id).as_deref().unwrap_or(inert(row)));
     line("note", &row.note);
     line("assumed", &row.assumed);
     line("no effect", &not_simulated(model, id).join(", "));
@@ -173,6 +187,14 @@ fn not_simulated(model: &Model, id: RowId) -> Vec<&str> {
     let input = wiring.input_terminals.as_ref().is_some_and(|it| has(&it.functions));
     let output = wiring.output_terminals.as_ref().is_some_and(|it| has(&it.functions));
     wiring.not_simulated.of_row(id, input, output)
+}
+
+/// What a row does that nothing is wired to.
+fn inert(row: &Row) -> &'static str {
+    match row.access {
+        Access::Read => "constant",
+        Access::Write | Access::Both => "stored only",
+    }
 }
 
 /// What the row is wired to, or `None` if it moves nothing.
@@ -239,9 +261,35 @@ fn goes_by(model: &Model, id: RowId) -> String {
     let thresholds = model.wiring.thresholds.iter();
     let thresholds =
         thresholds.filter(|(_, it)| *it == Number::Row(id)).map(|(threshold, _)| threshold.name());
-    let names: Vec<_> =
+    let mut names: Vec<_> =
         settings.chain(counts).chain(encoder).chain(segments).chain(thresholds).collect();
-    if names.is_empty() { "settings".into() } else { names.join(", ") }
+    names.extend(whole(model, id));
+    if names.is_empty() {
+        names.extend(model.counts(id).into_iter().map(|(name, _)| name));
+    }
+    names.join(", ")
+}
+
+/// What a row without a setting of its own is for.
+fn whole(model: &Model, id: RowId) -> impl Iterator<Item = &'static str> {
+    let wiring = &model.wiring;
+    let outputs = wiring.output_terminals.as_ref();
+    let ordered = matches!(&model.line.word_order, WordOrder::Row { row, .. } if *row == id);
+    let gear = wiring.axis.gear.as_ref();
+    let interrupt = wiring.axis.interrupt.as_ref();
+    let whole = [
+        ("output terminals", outputs.is_some_and(|it| it.functions.contains(&id))),
+        ("output terminals", outputs.is_some_and(|it| it.normally_closed == Some(id))),
+        (
+            "output words",
+            wiring.output_words.as_ref().is_some_and(|it| it.enabled_by.contains(&id)),
+        ),
+        ("user outputs", wiring.user_outputs == Some(id)),
+        ("word order", ordered),
+        ("gear", gear.is_some_and(|it| [it.numerator, it.denominator].contains(&id))),
+        ("interrupt positioning", interrupt.is_some_and(|it| it.rule.row() == Some(id))),
+    ];
+    whole.into_iter().filter(|it| it.1).map(|it| it.0)
 }
 
 fn kind(kind: Kind) -> &'static str {

@@ -5,9 +5,9 @@ use super::words;
 words! {
     /// Something a drive does at once when told to. Of several at once the one that stands first acts.
     Action {
-        QuickStop "quick_stop" "stand at once",
+        QuickStop "quick_stop" "stop at once, without a ramp",
         Stop "stop" "slow down to a standstill, with the deceleration of the motion",
-        HomeStart "home_start" "look for the origin; ignored while the axis moves",
+        HomeStart "home_start" "start a homing; ignored while the axis moves",
         MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set; that breaks off a homing too",
         RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; a run under way takes the new speed, a move only with `interrupt`; ignored in any other motion",
         Enable "enable" "switch the power stage on",

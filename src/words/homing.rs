@@ -179,7 +179,7 @@ words! {
 words! {
     /// How an axis stops at a limit.
     LimitStop {
-        Coast "coast" "it runs out, as without power",
+        Coast "coast" "it coasts, as without power",
         Quick "quick" "at once",
         Ramp "ramp" "with the deceleration of the motion",
     }

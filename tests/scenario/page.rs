@@ -12,8 +12,7 @@ use std::time::Duration;
 #[test]
 fn the_orders_of_the_page_are_known() {
     let page = read(&root("docs/scenarios.md"));
-    let part =
-        page.split("\n## ").find(|it| it.starts_with("What a step does")).expect("a heading");
+    let part = page.split("\n## ").find(|it| it.starts_with("Orders")).expect("a heading");
     let rows: Vec<_> = part.lines().filter_map(|line| line.strip_prefix("| `")).collect();
     assert!(rows.len() > 10, "{rows:?}");
     for row in rows {
@@ -38,7 +37,7 @@ fn the_example_goes_as_the_page_says() {
         rig.advance(Duration::from_millis(100));
         rig.send(&drivemu::wire::rtu::encode(1, &[3, 0, 6, 0, 1]));
     }
-    let junit = scenario::junit("bad-day", &[("cell-1".into(), rig.finish().to_vec())]);
+    let junit = scenario::junit("outage", &[("cell-1".into(), rig.finish().to_vec())]);
     let log = rig.log();
     let failed = rig.verdicts().iter().filter(|it| it.failure.is_some());
     for Verdict { step, at, failure, .. } in failed {

@@ -48,5 +48,5 @@ fn the_limit_is_in_the_help() {
     let folder = tempfile::tempdir().expect("a folder");
     let (code, help, _) = once(folder.path(), &["run", "--help"]);
     assert_eq!(code, Some(0));
-    assert!(help.contains(&format!("Of more than {MAX_CLIENTS} clients at once")), "{help}");
+    assert!(help.contains(&format!("At most {MAX_CLIENTS} clients at once")), "{help}");
 }
