@@ -339,3 +339,21 @@ fn says_why_it_does_not_start() {
     assert_eq!(start(Wants { quick_stop: true, ..ready }, true), Err(Ignored::Held));
     assert_eq!(start(Wants { power: false, stop: true, ..ready }, true), Err(Ignored::PowerOff));
 }
+
+#[test]
+fn coasts_only_while_it_moves() {
+    let coasts = |pause: bool, until: u64| {
+        let mut bench = Bench::new(Machine::default());
+        bench.obey(Order::Move { target: 2000, interrupt: false });
+        bench.advance_to(Instant::from_millis(300));
+        bench.wants.pause = pause;
+        bench.follow();
+        bench.advance_to(Instant::from_millis(until));
+        let held = bench.motor.phase() == Phase::Moving;
+        bench.wants.power = false;
+        bench.follow();
+        (held, bench.told.iter().any(|(_, it)| *it == Stage::Coasts))
+    };
+    assert_eq!(coasts(false, 310), (true, true));
+    assert_eq!(coasts(true, 2000), (true, false));
+}
