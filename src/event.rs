@@ -338,6 +338,13 @@ pub enum Change {
         /// The condition that was met last of those that count; `None` where there is none.
         why: Option<Condition>,
     },
+    /// A chain has ended at a segment that can't follow.
+    ChainEnded {
+        /// Number of the segment.
+        at: u16,
+        /// Why it can't.
+        why: Ignored,
+    },
     /// A motion under way goes by another setting from now on.
     Replans(Replanned),
     /// A level holds its move back: it slows down to a standstill, and the move is not over.

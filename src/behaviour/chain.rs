@@ -84,12 +84,15 @@ impl Chain {
         self.under_way.is_some()
     }
 
-    /// A segment begins, the first of a chain or the next.
-    pub fn begin(&mut self, now: Instant, rule: Rule) {
+    /// A segment begins, the first of a chain or the next. False where the chain has gone round without moving anything,
+    /// and ends with it.
+    pub fn begin(&mut self, now: Instant, rule: Rule) -> bool {
         self.at_once = if self.began == now { self.at_once + 1 } else { 0 };
         self.began = now;
-        let goes_on = !rule.is_last() && self.at_once < MOST_STEPS_AT_ONCE;
-        self.under_way = goes_on.then_some(Link { rule, arrived: None, stepped: None });
+        let goes_on = self.at_once < MOST_STEPS_AT_ONCE;
+        let link = Link { rule, arrived: None, stepped: None };
+        self.under_way = (goes_on && !rule.is_last()).then_some(link);
+        goes_on
     }
 
     /// Nothing follows.
@@ -226,11 +229,11 @@ mod tests {
         while chain.is_under_way() {
             chain.arrive(ms(5), ms(5));
             assert_eq!(chain.due(ms(5)), Some(None));
-            chain.begin(ms(5), rule);
             steps += 1;
+            assert_eq!(chain.begin(ms(5), rule), steps < MOST_STEPS_AT_ONCE);
         }
         assert_eq!(steps, MOST_STEPS_AT_ONCE);
-        chain.begin(ms(6), rule);
+        assert!(chain.begin(ms(6), rule));
         assert!(chain.is_under_way());
     }
 }

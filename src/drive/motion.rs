@@ -74,9 +74,6 @@ impl Drive {
             return;
         }
         self.uphold_causes();
-        if self.servo.is_braking() && !self.motor.is_moving() {
-            self.servo.braked(&mut |change| self.changes.push_back(change));
-        }
         self.follow_direction();
         loop {
             self.follow_settings();
@@ -91,8 +88,8 @@ impl Drive {
             }
             let changed = self.tell_stages(run.and_then(|(level, _)| level.segment()));
             self.settle_segments(wants.power && !wants.stop && !wants.quick_stop);
-            // An axis that tells of a fault has changed what is wanted of it.
-            if !changed {
+            // An axis that tells of a fault has changed what is wanted of it, and so has one that has braked for an alarm.
+            if !(self.release_brake() || changed) {
                 break;
             }
         }
@@ -100,6 +97,15 @@ impl Drive {
         if self.motor.take_edge(self.now) {
             self.gather_inputs();
         }
+    }
+
+    /// Switches an axis off that has braked for an alarm and stands. Has it?
+    fn release_brake(&mut self) -> bool {
+        let stands = self.servo.is_braking() && !self.motor.is_moving();
+        if stands {
+            self.servo.braked(&mut |change| self.changes.push_back(change));
+        }
+        stands
     }
 
     /// Positions of the machine between which the axis has to stay, if such are in force.
@@ -267,7 +273,7 @@ impl Drive {
         // What is no number above 0 is at once.
         let slope = |it: f64| (it > 0.0 && it.is_finite()).then(|| self.mrpm(it));
         match what {
-            Replan::Target(to) => Replanned::Target { to: to.saturating_sub(self.zero) },
+            Replan::Target(to) => Replanned::Target { to: self.wrapped(self.shown(to)) },
             Replan::Speed(speed) => Replanned::Speed { mrpm: self.mrpm(speed) },
             Replan::SlowSpeed(speed) => Replanned::SlowSpeed { mrpm: self.mrpm(speed) },
             Replan::StartSpeed(speed) => Replanned::StartSpeed { mrpm: self.mrpm(speed) },

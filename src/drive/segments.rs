@@ -3,7 +3,7 @@
 use super::Drive;
 use super::course::{Course, MoveRows, Way};
 use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
-use crate::event::{Change, Ignored, Ordered};
+use crate::event::{Change, Ignored};
 use crate::model::{ChainRules, Link};
 use crate::time::Duration;
 use crate::words::{Condition, Input, Inputs, Lasts, Setting, Target};
@@ -71,18 +71,20 @@ impl Drive {
     pub(super) fn advance_chain(&mut self) {
         let Some(why) = self.chain.due(self.now) else { return };
         let (from, to) = (self.segment, self.next_segment());
-        if self.target_of(to).is_err() {
-            return self.chain.end();
+        if let Err(why) = self.target_of(to) {
+            return self.end_chain(to, why);
         }
         self.changes.push_back(Change::ChainStep { from, to, why });
         // The motion under way, if there is one, is that of the segment which gives way.
         match self.move_by_segment(to, true) {
             Ok(()) => self.settle(),
-            Err(why) => {
-                self.chain.end();
-                self.ignore(Ordered::Input(Input::SegmentStart), why);
-            }
+            Err(why) => self.end_chain(to, why),
         }
+    }
+
+    fn end_chain(&mut self, at: u16, why: Ignored) {
+        self.chain.end();
+        self.changes.push_back(Change::ChainEnded { at, why });
     }
 
     fn start_move(&mut self) -> Result<(), Ignored> {
@@ -109,7 +111,10 @@ impl Drive {
         self.go_to(MoveRows::Segment(number), absolute, chained || running)?;
         self.segment = number;
         if let (Some(rules), Some(link)) = (&segments.chain, &segment.link) {
-            self.chain.begin(self.now, self.chain_rule(rules, link));
+            let rule = self.chain_rule(rules, link);
+            if !self.chain.begin(self.now, rule) {
+                self.end_chain(number, Ignored::NoMotion);
+            }
         }
         Ok(())
     }

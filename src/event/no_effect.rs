@@ -113,6 +113,8 @@ pub enum Ignored {
     NoSegment,
     /// No chain waits for it.
     NoChain,
+    /// No segment of the chain moves the axis.
+    NoMotion,
     /// There is no alarm.
     NoAlarm,
     /// No reset clears this alarm.

@@ -212,6 +212,10 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             let why = why::chain_step(*why);
             ("chain_step", json!({"from": from, "to": to, "why": why}))
         }
+        Change::ChainEnded { at, why } => {
+            let (reason, why) = (no_effect::name(*why), no_effect::reason(drive, *why));
+            ("chain_ended", json!({"segment": at, "reason": reason, "why": why}))
+        }
         Change::Replans(what) => ("replanned", replanned(what)),
         Change::Pauses => ("pauses", json!({})),
         Change::Resumes { to } => ("resumes", json!({"to": to})),

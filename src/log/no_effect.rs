@@ -70,6 +70,7 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
         Ignored::NoMeaning => "a parameter holds an undefined value".into(),
         Ignored::NoSegment => "there is no such segment".into(),
         Ignored::NoChain => "no segment waits for it".into(),
+        Ignored::NoMotion => "no segment of the chain moves the axis".into(),
         Ignored::NoAlarm => "no alarm is active".into(),
         Ignored::NotResettable(cause) => format!("no reset clears this alarm: {}", cause.about()),
         Ignored::CauseStands(cause) => {
@@ -143,7 +144,7 @@ pub fn fields(drive: &Drive, order: Ordered, why: Ignored) -> serde_json::Value 
 
 /// Why, as programs read it.
 #[cfg(feature = "cli")]
-fn name(why: Ignored) -> &'static str {
+pub fn name(why: Ignored) -> &'static str {
     match why {
         Ignored::NoSupply => "no_power",
         Ignored::NotReady => "not_ready",
@@ -172,6 +173,7 @@ fn name(why: Ignored) -> &'static str {
         Ignored::NoMeaning => "undefined_parameter",
         Ignored::NoSegment => "no_segment",
         Ignored::NoChain => "no_chain",
+        Ignored::NoMotion => "no_motion",
         Ignored::NoAlarm => "no_alarm",
         Ignored::NotResettable(_) => "not_resettable",
         Ignored::CauseStands(_) => "cause_present",

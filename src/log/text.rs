@@ -229,6 +229,9 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
         Change::ChainStep { from, to, why } => {
             format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
         }
+        Change::ChainEnded { at, why } => {
+            format!("chain ended at segment {at}: {}", no_effect::reason(drive, *why))
+        }
         Change::Replans(what) => replanned(what),
         Change::Pauses => "pauses".into(),
         Change::Resumes { to } => format!("goes on to {to}"),

@@ -74,7 +74,7 @@ pub fn port(port: PortSettings, heard: bool) -> &'static str {
 pub fn ascii(why: BadAscii) -> String {
     match why {
         BadAscii::NotHex(at) => format!("character {} is no hex digit", at + 1),
-        BadAscii::Length(len) => format!("{len} characters are no whole number of bytes"),
+        BadAscii::Length(len) => format!("{len} characters, not an even number of at least 6"),
         BadAscii::Lrc { got, want } => format!("LRC {got:02X} should be {want:02X}"),
     }
 }

@@ -69,3 +69,17 @@ fn the_log_tells_of_segments() {
     ];
     assert_eq!(super::motion::told(&rig, &kinds), want);
 }
+
+/// What a program reads where no segment follows, and that people read the same.
+#[cfg(feature = "cli")]
+#[test]
+fn the_log_tells_where_a_chain_ends() {
+    let mut rig = acme(&DeviceSpec::default());
+    for (row, value) in [("S165", 15), ("S166", 1), ("S167", 10)] {
+        write_row(&mut rig, row, value);
+    }
+    start(&mut rig, &[]);
+    rig.advance(Duration::from_secs(5));
+    let want = "chain_ended | 15 | there is no such segment | unit 5 chain ended at segment 15: there is no such segment";
+    assert_eq!(super::motion::told(&rig, &["chain_ended"]), [want]);
+}
