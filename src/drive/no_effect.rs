@@ -7,6 +7,7 @@
 
 use super::Drive;
 use crate::bank::WritePlan;
+use crate::behaviour::{Control, Phase};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Shows, Wiring};
 use crate::time::Instant;
@@ -181,9 +182,24 @@ impl Drive {
             Input::HomeStart => edge(self.motor.may_start(false)),
             Input::MoveStart | Input::SegmentStart => edge(self.motor.may_move(false)),
             Input::InterruptStart => edge(self.may_interrupt()),
+            Input::ClearDeviation | Input::CommandInhibit => {
+                Acts::Level(self.why_not_held_back(input))
+            }
             Input::AlarmReset => Acts::Edge(self.servo.may_reset().err()),
             _ if asks_for_run(input) => Acts::Level(self.why_no_run(input)),
             _ => Acts::Other,
+        }
+    }
+
+    /// Why `input` does not hold the command of the motion under way back, if there is one and it does not.
+    fn why_not_held_back(&self, input: Input) -> Option<Ignored> {
+        let by_position = self.motor.control() == Some(Control::Position);
+        match self.motor.phase() {
+            Phase::Homing => Some(Ignored::Homing),
+            Phase::Jogging { .. } if by_position || input == Input::CommandInhibit => {
+                Some(Ignored::Moving)
+            }
+            _ => None,
         }
     }
 
