@@ -122,13 +122,16 @@ impl Servo {
         self.settle(tell);
     }
 
-    /// A command that asks for the power stage, or takes that back.
+    /// A command that asks for the power stage, or takes that back. Under an alarm, or while a level releases it, nothing
+    /// can ask for it: it stays off when that has gone, unless it was asked for before.
     ///
     /// # Errors
     /// Why the power stage stays as it is.
     pub fn latch(&mut self, on: bool, tell: &mut impl FnMut(Change)) -> Result<(), Ignored> {
         let before = self.is_enabled();
-        self.latched = on;
+        if !on || !(self.released || self.alarm.is_some()) {
+            self.latched = on;
+        }
         self.settle(tell);
         match (on, before, self.is_enabled()) {
             (true, true, _) => Err(Ignored::AlreadyOn),

@@ -133,6 +133,7 @@ impl Drive {
                 Some(Action::MoveStart) => continue,
                 // It can take the place of a move.
                 Some(Action::RunStart) if interrupts(bit) => continue,
+                Some(_) if interrupts(bit) => Ignored::MovesAndRunsOnly,
                 Some(_) => Ignored::MovesOnly,
             };
             self.ignore(Ordered::Bit { row, bit, on: true }, why);

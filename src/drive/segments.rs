@@ -135,26 +135,38 @@ impl Drive {
         Ok(())
     }
 
-    /// By level it needs no start: it has been wanted since the level came.
+    /// By level it needs no start: it has been wanted since the level came. By an edge it may take the place of one that
+    /// an edge has started.
     fn start_velocity_segment(&mut self) -> Result<(), Ignored> {
         if self.velocity_lasts() == Some(Lasts::Edge) {
-            self.motor.may_start(false)?;
+            let before = self.velocity.filter(|it| it.by_edge);
+            self.motor.may_start(before.is_some())?;
             self.velocity = self.selected_velocity(true);
-            let run = self.wanted_run();
-            let may = match run {
-                Some((_, ramp)) => self.motor.may_go(self.now, ramp.speed),
-                None if self.velocity.is_some() => {
-                    let waits = self.inputs.has(Input::ZeroSpeedClamp);
-                    if waits { Ok(()) } else { Err(Ignored::NoSpeed) }
-                }
-                None => Err(Ignored::NoSegment),
-            };
-            self.velocity = self.velocity.filter(|_| may.is_ok());
+            let course = self.course.take();
+            let may = self.may_run_velocity(before.is_some());
+            if may.is_err() {
+                self.velocity = before;
+            }
+            // What begins anew takes its settings anew; what goes on or ends has those that it began with.
+            if may.is_err() || self.wanted_run().is_none() {
+                self.course = course;
+            }
             may?;
         }
         match self.velocity {
             None => Err(Ignored::NoSegment),
             Some(_) => Ok(()),
+        }
+    }
+
+    /// May the velocity segment begin that is selected? At speed 0 it ends one that is under way; while speeds are clamped
+    /// to 0 it waits.
+    fn may_run_velocity(&self, under_way: bool) -> Result<(), Ignored> {
+        match self.wanted_run() {
+            Some((_, ramp)) => self.motor.may_go(self.now, ramp.speed),
+            None if self.velocity.is_none() => Err(Ignored::NoSegment),
+            None if under_way || self.inputs.has(Input::ZeroSpeedClamp) => Ok(()),
+            None => Err(Ignored::NoSpeed),
         }
     }
 

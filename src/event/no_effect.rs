@@ -158,8 +158,10 @@ pub enum Ignored {
     After(Action),
     /// It says something about an order, and there is none.
     NoOrder,
-    /// It says something about another order.
+    /// It says something about a move, and another order is given.
     MovesOnly,
+    /// It says something about a motion that takes the place of another, and a stop or a homing is ordered.
+    MovesAndRunsOnly,
 }
 
 impl Ignored {

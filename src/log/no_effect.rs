@@ -90,6 +90,7 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
         Ignored::After(action) => format!("{} of the same write goes first", action.name()),
         Ignored::NoOrder => "no order is set with it".into(),
         Ignored::MovesOnly => "it applies to move_start only".into(),
+        Ignored::MovesAndRunsOnly => "it applies to move_start and run_start only".into(),
     }
 }
 
@@ -190,5 +191,6 @@ pub fn name(why: Ignored) -> &'static str {
         Ignored::After(_) => "lower_priority",
         Ignored::NoOrder => "no_order",
         Ignored::MovesOnly => "moves_only",
+        Ignored::MovesAndRunsOnly => "moves_and_runs_only",
     }
 }
