@@ -1,7 +1,7 @@
 //! Paths that a run reads and writes: one that is both, or that two outputs share, is refused before anything is touched,
 //! however it is spelled.
 
-use super::program::{Program, file, once};
+use super::program::{Program, ending_signals, file, once};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -223,7 +223,7 @@ fn the_report_is_there_whatever_ends_the_run() {
         assert!(report.contains(why), "{args:?}: {report}");
     }
     let report = folder.path().join("report.xml");
-    for signal in ["HUP", "INT", "TERM"] {
+    for signal in ending_signals() {
         let path = folder.path().join("t.yaml");
         let (path, out) = (path.to_str().expect("text"), report.to_str().expect("text"));
         let program = Program::run(&["hcfa-x", "--scenario", path, "--junit", out]);

@@ -1,7 +1,7 @@
 //! Stdin, stdout and stderr closed, full, broken or never read: no drive stops for that, and the exit code tells what could
 //! not be written.
 
-use super::program::{Program, file, once, wait_for};
+use super::program::{Program, ending_signals, file, once, wait_for};
 use drivemu::wire::mbap;
 use std::fs;
 use std::io::{Read, Write};
@@ -202,7 +202,7 @@ fn fifos_and_devices() {
 fn a_hang_up_ends_like_a_signal_that_ends() {
     let folder = folder();
     let ready = folder.path().join("ready.json");
-    for signal in ["HUP", "TERM", "INT"] {
+    for signal in ending_signals() {
         let link = folder.path().join("cell.tty");
         let program = Program::run(&["hcfa-x", "--pty", link.to_str().expect("text")]);
         let (code, _, stderr) = program.stop(signal);
