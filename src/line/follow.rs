@@ -1,6 +1,6 @@
 //! Traffic between a master and other units: followed so that it is never taken for ours.
 
-use crate::wire::function::{EXCEPTION, READ};
+use crate::wire::function::EXCEPTION;
 use crate::wire::{Adu, rtu};
 
 /// A good frame that is not for us.
@@ -29,7 +29,19 @@ struct Pending {
 impl Follower {
     /// Length of the foreign frame that begins with `bytes`, as far as can be told by now.
     pub fn frame_len(&self, bytes: &[u8]) -> Option<usize> {
-        self.answer_len(bytes).or_else(|| rtu::request_len(bytes))
+        let asked = rtu::request_len(bytes);
+        match self.answer_len(bytes) {
+            // No answer that goes on, but the request once again: its unit has not answered.
+            Some(len) if bytes.len() < len && !self.is_len_fixed() && ends_at(bytes, asked) => {
+                asked
+            }
+            awaited => awaited.or(asked),
+        }
+    }
+
+    /// Does the request fix the length of its answer?
+    fn is_len_fixed(&self) -> bool {
+        self.pending.is_some_and(|pending| pending.answer_len.is_some())
     }
 
     /// Names a good frame that is not for us, and remembers it if it is a request.
@@ -41,12 +53,7 @@ impl Follower {
         self.pending = Some(Pending {
             unit: adu.unit,
             function: adu.function(),
-            answer_len: match bytes {
-                [_, READ, _, _, high, low, _, _] => {
-                    Some(5 + 2 * usize::from(u16::from_be_bytes([*high, *low])))
-                }
-                _ => None,
-            },
+            answer_len: answer_len(bytes),
         });
         Foreign::Request(adu)
     }
@@ -77,4 +84,21 @@ impl Follower {
         let expected = function & EXCEPTION != 0 || pending.answer_len.is_none_or(|it| it == len);
         expected.then_some(len)
     }
+}
+
+/// Length of a good answer to `request`, where that fixes it.
+fn answer_len(request: &[u8]) -> Option<usize> {
+    let (function, rest) = request.get(1..)?.split_first()?;
+    let &[_, _, high, low, ..] = rest else { return None };
+    let count = usize::from(u16::from_be_bytes([high, low]));
+    match function {
+        0x01 | 0x02 => Some(5 + count.div_ceil(8)),
+        0x03 | 0x04 | 0x17 => Some(5 + 2 * count),
+        _ => None,
+    }
+}
+
+/// Is there a frame at the front of `bytes` whose CRC fits at `len`?
+fn ends_at(bytes: &[u8], len: Option<usize>) -> bool {
+    rtu::ends(bytes).any(|end| Some(end) == len)
 }

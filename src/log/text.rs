@@ -121,8 +121,7 @@ fn asked(drive: &Drive, request: &[u8], tell: Tell) -> String {
         },
         rows::Told::Write(_, items) => format!("write {}", list(drive, &items, tell)),
         rows::Told::Other => {
-            let function = request.first().copied().unwrap_or(0);
-            format!("function {function:02X} {}", to_hex(request.get(1..).unwrap_or_default()))
+            format!("function {}", to_hex(request))
         }
     }
 }

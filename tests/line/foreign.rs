@@ -148,6 +148,23 @@ fn a_question_without_an_answer() {
     }
 }
 
+/// A master in a hurry asks a unit that is not there twice, and then us: the second time must not be taken for the
+/// beginning of an answer that is longer.
+#[test]
+fn a_question_asked_twice_and_a_request_to_us() {
+    let more = ["09 04 2000 0001", "09 01 2000 0001", "09 0C", "09 17 2000 0001 0000 0001 02 0007"];
+    let all = conversations().into_iter().map(|(request, _)| request).chain(more.map(frame));
+    for request in all {
+        for pause in [1, 3, 10].map(Duration::from_millis) {
+            let mut rig = cell(false);
+            overhear(&mut rig, [&*request, &*request], pause);
+            let mine = frame("04 03 0023 0001");
+            assert_eq!(rig.push(&mine), frame("04 03 02 003C"), "{request:02X?}\n{}", rig.log());
+            assert_eq!(rig.log().matches("foreign ").count(), 2, "{}", rig.log());
+        }
+    }
+}
+
 /// An unknown function has no length, so silence has to end it; then all is well again.
 #[test]
 fn a_conversation_in_an_unknown_function() {
