@@ -289,9 +289,9 @@ impl Bus {
         self.links.get(&link).is_some_and(|it| it.line.waits_for_silence_only())
     }
 
-    /// When something happens next in a drive by itself.
-    pub fn drives_at(&self) -> Option<Instant> {
-        self.agenda.first().map(|(at, _)| at)
+    /// When the first watchdog of a drive expires if no master says more.
+    pub fn watchdog_at(&self) -> Option<Instant> {
+        self.drives.iter().filter_map(Drive::watchdog_at).min()
     }
 
     /// When to come back at the latest, and why.

@@ -306,10 +306,15 @@ impl Drive {
 
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
-        let holds = self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline);
         let servo = self.servo.deadline().filter(|_| self.powered);
-        let ends = [servo, self.motor.deadline(), self.chain.deadline(), self.troubles.deadline()];
-        holds.chain(ends.into_iter().flatten()).min()
+        let (motor, chain) = (self.motor.deadline(), self.chain.deadline());
+        let ends = [self.watchdog_at(), servo, motor, chain, self.troubles.deadline()];
+        ends.into_iter().flatten().min()
+    }
+
+    /// When the first watchdog expires if the master says no more.
+    pub fn watchdog_at(&self) -> Option<Instant> {
+        self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline).min()
     }
 
     /// The next change that has not been told yet.

@@ -195,7 +195,8 @@ impl Served {
     /// The time at which input arrived on `link` that was just read.
     ///
     /// Input that waited while this process was kept from running is older than it looks: it came before the silence
-    /// that nobody has heard yet, and before whatever else is overdue, a watchdog or a step of a scenario.
+    /// that nobody has heard yet, and before a watchdog or a step of a scenario that is overdue. What else a drive did by
+    /// itself meanwhile says nothing about when it came: a watchdog that it refreshes counts from as late as can be.
     fn arrival(&self, link: LinkId) -> Instant {
         let now = self.clock.now();
         let silence = self.bus.silence_at(link);
@@ -205,7 +206,7 @@ impl Served {
             false => (None, silence),
         };
         let step = self.stage.as_ref().and_then(Stage::poll_at);
-        let overdue = [unfinished, self.bus.drives_at(), step].into_iter().flatten();
+        let overdue = [unfinished, self.bus.watchdog_at(), step].into_iter().flatten();
         let arrived = overdue.min().map_or(now, |at| now.min(at - Duration::from_nanos(1)));
         ended.filter(|at| *at <= now).map_or(arrived, |at| arrived.max(at))
     }
