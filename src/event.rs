@@ -8,11 +8,11 @@ pub use replanned::Replanned;
 
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
+use crate::vocabulary::{Action, AlarmCause, Condition, HomeEnd, HomingStep, Refusal, RowId};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
-use crate::words::{Action, AlarmCause, Condition, HomeEnd, Refusal, RowId, Step};
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +89,7 @@ pub enum What {
         /// How both are set.
         port: PortSettings,
         /// Does the line understand it?
-        heard: bool,
+        understood: bool,
     },
     /// A TCP stream that could not be followed and was closed.
     Lost(BadHeader),
@@ -100,7 +100,7 @@ pub enum What {
         /// The unit that was asked.
         unit: u8,
         /// What it did.
-        mishap: Mishap,
+        effect: FaultEffect,
         /// How often it has acted by now.
         hit: u64,
     },
@@ -181,9 +181,9 @@ pub enum Outcome {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RuleId(pub u16);
 
-/// What bad weather did to a request or its reply, with the numbers that it drew.
+/// What a fault rule did to a request or its reply, with the numbers that it drew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mishap {
+pub enum FaultEffect {
     /// No drive saw the request.
     RequestLost,
     /// The reply never left.
@@ -392,7 +392,7 @@ pub enum Change {
         /// Number of the method.
         method: i64,
         /// The step.
-        step: Step,
+        step: HomingStep,
         /// In thousandths of a revolution a minute; the sign is the direction.
         mrpm: i64,
     },
@@ -401,7 +401,7 @@ pub enum Change {
         /// Number of the method.
         method: i64,
         /// The step.
-        step: Step,
+        step: HomingStep,
         /// In counts of the drive.
         at: i64,
     },
@@ -452,9 +452,9 @@ pub enum Change {
         why: Ignored,
     },
     /// Something is wrong with the device from now on, or no longer.
-    Trouble {
+    DeviceFault {
         /// What.
-        trouble: Trouble,
+        device_fault: DeviceFault,
         /// From now on?
         on: bool,
     },
@@ -478,7 +478,7 @@ pub enum Change {
 
 /// What can be wrong with a device, apart from its line, for as long as somebody says so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Trouble {
+pub enum DeviceFault {
     /// The cause of an alarm stands: the drive trips, and no reset helps.
     Cause(AlarmCause),
     /// The axis can't leave the count at which it is.

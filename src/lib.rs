@@ -19,17 +19,17 @@
 //!
 //! ```text
 //! main · cli            flags, exit code
-//! testkit               virtual clock; of all this only `testkit::live` needs the shell
-//! shell                 the only place that waits          (feature `cli`)
+//! testkit               virtual clock; of all this only `testkit::live` needs the server
+//! server                the only place that waits          (feature `cli`)
 //! scenario              what happens to a line, and when
 //! bench  log            benches: YAML -> buses | events as text
 //! bus                   one line: framing + drives
 //! drive                 the only place that sees registers AND behaviours
-//! bank  behaviour  fault                               cells and plans | state machines | bad weather
+//! bank  behaviour  fault                               cells and plans | state machines | fault rules
 //! model                 YAML -> Model
 //! line  motion          silence and frames | closed form
 //! event                 what happened
-//! words  serial         what models and behaviours both say | speed and format of a line
+//! vocabulary  serial         what models and behaviours both say | speed and format of a line
 //! time  units  wire  problem  rng                          what everyone may say
 //! text                  which characters a line of text may hold
 //! ```
@@ -50,13 +50,13 @@ pub mod rng;
 pub mod scenario;
 pub mod serial;
 #[cfg(feature = "cli")]
-pub mod shell;
+pub mod server;
 pub mod testkit;
 pub mod text;
 pub mod time;
 pub mod units;
+pub mod vocabulary;
 pub mod wire;
-pub mod words;
 
 /// The README's Rust is tested with everything else.
 #[cfg(doctest)]

@@ -2,16 +2,17 @@
 
 mod allocation;
 mod bounds;
+mod device_faults;
 mod documents;
 mod expect;
 mod fault;
 mod frames;
 mod functions;
-mod habits;
 mod homing;
 mod kit;
 mod ladder;
 mod line;
+mod line_behaviour;
 #[cfg(feature = "cli")]
 mod live;
 mod no_effect;
@@ -21,12 +22,11 @@ mod scenario;
 #[cfg(feature = "cli")]
 mod schema;
 #[cfg(feature = "cli")]
-mod shell;
+mod server;
+mod soak;
 mod source;
 mod state;
 mod status;
-mod storm;
 mod tidy;
 mod transcripts;
-mod troubles;
-mod words;
+mod vocabulary;

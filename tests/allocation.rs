@@ -12,7 +12,7 @@ use drivemu::wire::rtu;
 fn a_transaction_in_the_steady_state_allocates_nothing() {
     for name in MODELS {
         let model = Builtin::find(name).expect("embedded").load(&Choices::new()).expect("valid");
-        let device = Device::new(model.into(), &DeviceSpec::default()).expect("no wishes");
+        let device = Device::new(model.into(), &DeviceSpec::default()).expect("no settings");
         let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
         let mut bus = Bus::new();
         let drive = bus.add(device.model.clone(), &device.setups[0], 0);

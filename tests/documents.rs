@@ -12,10 +12,10 @@ use drivemu::model;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 use drivemu::units::{Dimension, Unit};
-use drivemu::words::{
+use drivemu::vocabulary::{
     Action, AlarmCause, Cause, Condition, HomeStarter, IndexRule, InhibitRule, Input,
-    InterruptRule, Lasts, LimitRule, LimitSource, LimitStop, Modifier, OriginPosition, OriginStop,
-    Output, Pace, Quantity, Setting, SoftLimitRule, Taken, Target, Then, Threshold, Word,
+    InterruptRule, Lasts, LimitRule, LimitSource, LimitStop, Modifier, Named, OriginPosition,
+    OriginStop, Output, Pace, Quantity, Setting, SoftLimitRule, Taken, Target, Then, Threshold,
 };
 use serde_yaml::Value;
 use std::fmt::Write as _;
@@ -122,7 +122,7 @@ fn units(out: &mut String, name: &str, dimensions: &[Dimension]) {
     writeln!(out, "- `{name}`: {}", symbols.join(" or ")).expect("a string");
 }
 
-fn section<W: Word>(out: &mut String, title: &str, about: &str) {
+fn section<W: Named>(out: &mut String, title: &str, about: &str) {
     write!(out, "\n## {title}\n\n{about}\n\n| name | meaning |\n| --- | --- |\n")
         .expect("a string");
     for word in W::ALL {

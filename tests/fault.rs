@@ -1,4 +1,4 @@
-//! Bad weather: what each kind of fault does to the bytes, whom it hits, and that a seed says it all.
+//! Faults: what each kind of fault does to the bytes, whom it hits, and that a seed says it all.
 
 mod bytes;
 #[cfg(feature = "cli")]
@@ -14,7 +14,7 @@ mod turns;
 
 use crate::kit::{rig, rig_of};
 use drivemu::bench::DeviceSpec;
-use drivemu::event::{Mishap, What};
+use drivemu::event::{FaultEffect, What};
 use drivemu::testkit::Rig;
 use drivemu::wire::rtu;
 
@@ -47,12 +47,12 @@ fn frame(pdu: &[u8]) -> Vec<u8> {
 }
 
 /// What rules did, in order.
-fn mishaps(rig: &Rig) -> Vec<Mishap> {
-    let mishap = |event: &drivemu::event::Event| match event.what {
-        What::Fault { mishap, .. } => Some(mishap),
+fn effects(rig: &Rig) -> Vec<FaultEffect> {
+    let effect = |event: &drivemu::event::Event| match event.what {
+        What::Fault { effect, .. } => Some(effect),
         _ => None,
     };
-    rig.events().iter().filter_map(mishap).collect()
+    rig.events().iter().filter_map(effect).collect()
 }
 
 fn hits(rig: &Rig, name: &str) -> u64 {

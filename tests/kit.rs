@@ -6,11 +6,11 @@ use drivemu::bench::{
 };
 use drivemu::bus::Output;
 use drivemu::event::{Event, What};
-use drivemu::fault::Habits;
+use drivemu::fault::LineBehaviour;
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::testkit::{Rig, transcript};
-use drivemu::words::Refusal;
+use drivemu::vocabulary::Refusal;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -124,7 +124,7 @@ pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Bench
     let devices = vec![device];
     let wire = WireSpec::of(&devices, None, None, false);
     let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    BenchLine { name, port, wire, devices, faults, habits: Habits::default() }
+    BenchLine { name, port, wire, devices, faults, line_behaviour: LineBehaviour::default() }
 }
 
 /// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
@@ -149,10 +149,10 @@ pub fn bench_line(text: &str) -> BenchLine {
 
 /// The same line again.
 pub fn again(line: &BenchLine) -> BenchLine {
-    let BenchLine { name, port, wire, devices, faults, habits } = line;
+    let BenchLine { name, port, wire, devices, faults, line_behaviour } = line;
     let (name, port, faults) = (name.clone(), port.clone(), faults.clone());
-    let (devices, habits) = (devices.clone(), habits.clone());
-    BenchLine { name, port, wire: *wire, devices, faults, habits }
+    let (devices, line_behaviour) = (devices.clone(), line_behaviour.clone());
+    BenchLine { name, port, wire: *wire, devices, faults, line_behaviour }
 }
 
 /// The refusal of the last transaction, if it was one.

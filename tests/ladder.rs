@@ -12,7 +12,7 @@ mod yako;
 use crate::kit::{last_refusal, rig, rig_of, text_of};
 use drivemu::bench::DeviceSpec;
 use drivemu::testkit::Rig;
-use drivemu::words::{Cause, Word};
+use drivemu::vocabulary::{Cause, Named};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A request that is refused.

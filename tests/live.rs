@@ -4,10 +4,10 @@
 use crate::kit::{bench_line, rig};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::Command;
-use drivemu::event::{DriveId, Trouble};
+use drivemu::event::{DeviceFault, DriveId};
 use drivemu::testkit::{Rig, hex, live, to_hex};
+use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::{crc16, rtu};
-use drivemu::words::AlarmCause;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 
@@ -72,8 +72,8 @@ async fn values_and_what_was_set_up() {
 async fn an_alarm_and_what_is_wrong_with_the_device() {
     let mut drive = stepper();
     drive.command(Command::Raise { drive: FIRST, cause: AlarmCause::OverVoltage }).expect("it can");
-    let trouble = Trouble::Cause(AlarmCause::OverVoltage);
-    drive.command(Command::Trouble { drive: FIRST, trouble, on: true }).expect("it can");
+    let device_fault = DeviceFault::Cause(AlarmCause::OverVoltage);
+    drive.command(Command::DeviceFault { drive: FIRST, device_fault, on: true }).expect("it can");
     let before = drive.ask(STATUS);
     let seen = answers(drive, &[(0, STATUS), (10, "01 06 002D 0021"), (20, STATUS)]).await;
     assert_ne!(before, stepper().ask(STATUS), "an alarm shows");
@@ -247,7 +247,7 @@ fn a_rig_in_use_is_set_up_no_more() {
     let sets_up: [fn(Rig); 6] = [
         |rig| drop(rig.with_seed(1)),
         |rig| drop(rig.with_fault("late")),
-        |rig| drop(rig.with_habits(drivemu::fault::Habits::default())),
+        |rig| drop(rig.with_line_behaviour(drivemu::fault::LineBehaviour::default())),
         |rig| drop(rig.with_scenario("steps: []")),
         |rig| drop(rig.with_framing(drivemu::line::Framing::Mbap)),
         |rig| drop(rig.with_state("")),

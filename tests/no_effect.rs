@@ -8,7 +8,7 @@ use drivemu::bus::Command;
 use drivemu::event::{Change, DriveId, What};
 use drivemu::model::{RowId, Wiring};
 use drivemu::testkit::{Rig, to_hex};
-use drivemu::words::{Action, Input, Output};
+use drivemu::vocabulary::{Action, Input, Output};
 use std::time::Duration;
 
 const FIRST: DriveId = DriveId(0);

@@ -10,8 +10,8 @@ use drivemu::line::Framing;
 use drivemu::model::{Access, Layer, Located};
 use drivemu::testkit::Rig;
 use drivemu::time::{Duration, Instant};
+use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::{mbap, rtu};
-use drivemu::words::AlarmCause;
 use proptest::prelude::*;
 use traffic::{Piece, bytes, pdu, pieces, request};
 

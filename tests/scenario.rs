@@ -9,7 +9,7 @@ use drivemu::bench::{BuiltinLibrary, DeviceSpec};
 use drivemu::problem::render::render;
 use drivemu::scenario::Verdict;
 use drivemu::testkit::Rig;
-use drivemu::words::{Output, Quantity};
+use drivemu::vocabulary::{Output, Quantity};
 use std::time::Duration;
 
 /// A run at 120 rpm, 2000 counts/s.

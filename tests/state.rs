@@ -6,8 +6,8 @@ use drivemu::bus::{Command, Output};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::testkit::{Rig, hex};
 use drivemu::time::{Duration, Instant};
+use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::rtu;
-use drivemu::words::AlarmCause;
 
 const ACME: &str = include_str!("models/acme-s1.yaml");
 

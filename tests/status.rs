@@ -7,7 +7,7 @@
 use crate::expect::{files, read};
 use crate::kit::{Files, MODELS};
 use drivemu::bench::Library;
-use drivemu::model::{Model, Order, RowId, WordOrder};
+use drivemu::model::{Model, RegisterOrder, RowId, WordOrder};
 use drivemu::testkit::transcript::{self, Script};
 use drivemu::units::parse_integer;
 use std::collections::BTreeMap;
@@ -164,7 +164,7 @@ impl Table {
 fn words(model: &Model, row: RowId, value: i64) -> Vec<u16> {
     let kind = model.map.row(row).kind;
     let raw = kind.wrapped(value);
-    let low_first = matches!(model.line.word_order, WordOrder::Fixed(Order::LowFirst));
+    let low_first = matches!(model.line.word_order, WordOrder::Fixed(RegisterOrder::LowFirst));
     match (kind.words(), low_first) {
         (1, _) => vec![raw as u16],
         (_, true) => vec![raw as u16, (raw >> 16) as u16],

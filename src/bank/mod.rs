@@ -4,17 +4,17 @@
 //! refusal and change nothing; [`Bank::commit`] cannot fail. The bank knows rows, layers and locks. It does not
 //! know axes or signals: what the rest of the drive has to say about a write comes in through a [`Gate`].
 
+mod causes;
 mod kept;
-mod ladder;
 mod plan;
-mod wear;
+mod write_rate;
 
+pub use causes::Causes;
 pub use kept::{Kept, KeptRow};
-pub use ladder::Causes;
 pub use plan::{ReadPlan, WritePlan};
-pub use wear::{Haste, OFTEN, SOON, is_worn};
+pub use write_rate::{OFTEN, SOON, WriteRate, is_worn};
 
-use crate::model::{Model, Order, Row, RowId, WordOrder};
+use crate::model::{Model, RegisterOrder, Row, RowId, WordOrder};
 
 /// What the rest of the drive says about locked rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -106,11 +106,11 @@ impl Bank {
     }
 
     /// Which word of `row` stands at the lower address right now.
-    pub fn order(&self, model: &Model, row: &Row) -> Order {
+    pub fn order(&self, model: &Model, row: &Row) -> RegisterOrder {
         match (row.order, &model.line.word_order) {
             (Some(order), _) | (None, &WordOrder::Fixed(order)) => order,
             (None, WordOrder::Row { row, codes }) => {
-                codes.get(&self.value(model, *row)).copied().unwrap_or(Order::HighFirst)
+                codes.get(&self.value(model, *row)).copied().unwrap_or(RegisterOrder::HighFirst)
             }
         }
     }
@@ -125,24 +125,24 @@ fn factory(model: &Model, station: usize) -> Box<[u32]> {
 }
 
 /// Word `word` (0 or 1, by address) of a value of `row`.
-pub(crate) fn word_of(row: &Row, order: Order, raw: u32, word: u8) -> u16 {
+pub(crate) fn word_of(row: &Row, order: RegisterOrder, raw: u32, word: u8) -> u16 {
     if is_high(row, order, word) { (raw >> 16) as u16 } else { raw as u16 }
 }
 
 /// `raw` with its word `word` (by address) replaced.
-pub(crate) fn with_word(row: &Row, order: Order, raw: u32, word: u8, value: u16) -> u32 {
+pub(crate) fn with_word(row: &Row, order: RegisterOrder, raw: u32, word: u8, value: u16) -> u32 {
     match is_high(row, order, word) {
         true => raw & 0x0000_FFFF | u32::from(value) << 16,
         false => raw & 0xFFFF_0000 | u32::from(value),
     }
 }
 
-fn is_high(row: &Row, order: Order, word: u8) -> bool {
-    row.kind.words() == 2 && (order == Order::HighFirst) == (word == 0)
+fn is_high(row: &Row, order: RegisterOrder, word: u8) -> bool {
+    row.kind.words() == 2 && (order == RegisterOrder::HighFirst) == (word == 0)
 }
 
 /// The number that the two words of a pair stand for, lower address first.
-pub(crate) fn row_value(row: &Row, order: Order, words: [u16; 2]) -> i64 {
+pub(crate) fn row_value(row: &Row, order: RegisterOrder, words: [u16; 2]) -> i64 {
     let raw = with_word(row, order, 0, 0, words[0]);
     row.kind.value(with_word(row, order, raw, 1, words[1]))
 }

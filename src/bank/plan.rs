@@ -2,8 +2,8 @@
 
 use super::{Bank, Causes, Gate, with_word, word_of};
 use crate::model::{Access, Layer, Located, LongAccess, Model, RowId};
+use crate::vocabulary::{Cause, Detail, Refusal};
 use crate::wire::{Span, Words};
-use crate::words::{Cause, Detail, Refusal};
 
 /// Most registers in a 0x10 request (application protocol, 6.12).
 const WRITE_MAX: usize = 123;

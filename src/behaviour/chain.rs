@@ -5,7 +5,7 @@
 //! there, is for others to say.
 
 use crate::time::{Duration, Instant};
-use crate::words::Condition;
+use crate::vocabulary::Condition;
 
 /// Most conditions of a segment.
 pub const MOST_WAITS: usize = 4;
@@ -20,7 +20,7 @@ pub enum Wait {
     /// So much time in position.
     Delay(Duration),
     /// A rising edge.
-    Step,
+    HomingStep,
     /// The axis at a place.
     Position {
         /// A count of the machine.
@@ -34,7 +34,7 @@ impl Wait {
     fn condition(self) -> Condition {
         match self {
             Self::Delay(_) => Condition::Delay,
-            Self::Step => Condition::Step,
+            Self::HomingStep => Condition::HomingStep,
             Self::Position { .. } => Condition::Position,
         }
     }
@@ -42,7 +42,7 @@ impl Wait {
 
 /// When a segment gives way.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Rule {
+pub struct ChainRule {
     /// What it waits for. Nothing at all: for the position with `through`, else for ever.
     pub waits: [Option<Wait>; MOST_WAITS],
     /// For all of them instead of the first.
@@ -51,7 +51,7 @@ pub struct Rule {
     pub through: bool,
 }
 
-impl Rule {
+impl ChainRule {
     /// Is there nothing that a segment could wait for?
     fn is_last(&self) -> bool {
         self.waits.iter().all(Option::is_none) && !self.through
@@ -61,7 +61,7 @@ impl Rule {
 /// A chain, under way or not.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Chain {
-    under_way: Option<Link>,
+    under_way: Option<ChainState>,
     /// When a segment began last.
     began: Instant,
     /// How many have begun at that instant before.
@@ -70,8 +70,8 @@ pub struct Chain {
 
 /// The segment under way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Link {
-    rule: Rule,
+struct ChainState {
+    rule: ChainRule,
     /// Since when it stands in position.
     arrived: Option<Instant>,
     /// When the edge came.
@@ -86,11 +86,11 @@ impl Chain {
 
     /// A segment begins, the first of a chain or the next. False where the chain has gone round without moving anything,
     /// and ends with it.
-    pub fn begin(&mut self, now: Instant, rule: Rule) -> bool {
+    pub fn begin(&mut self, now: Instant, rule: ChainRule) -> bool {
         self.at_once = if self.began == now { self.at_once + 1 } else { 0 };
         self.began = now;
         let goes_on = self.at_once < MOST_STEPS_AT_ONCE;
-        let link = Link { rule, arrived: None, stepped: None };
+        let link = ChainState { rule, arrived: None, stepped: None };
         self.under_way = (goes_on && !rule.is_last()).then_some(link);
         goes_on
     }
@@ -108,7 +108,7 @@ impl Chain {
     }
 
     /// Places that the axis has not come to by `now` it comes to when `reaches` says.
-    pub fn look(&mut self, now: Instant, reaches: impl Fn(i64) -> Option<Instant>) {
+    pub fn sample(&mut self, now: Instant, reaches: impl Fn(i64) -> Option<Instant>) {
         let waits = self.under_way.iter_mut().flat_map(|link| &mut link.rule.waits).flatten();
         for wait in waits {
             if let Wait::Position { place, at } = wait
@@ -122,7 +122,7 @@ impl Chain {
     /// The edge came. Does the segment under way wait for it?
     pub fn step(&mut self, now: Instant) -> bool {
         let Some(link) = &mut self.under_way else { return false };
-        let waits = link.rule.waits.contains(&Some(Wait::Step)) && link.stepped.is_none();
+        let waits = link.rule.waits.contains(&Some(Wait::HomingStep)) && link.stepped.is_none();
         link.stepped.get_or_insert(now);
         waits
     }
@@ -139,10 +139,10 @@ impl Chain {
     }
 }
 
-impl Link {
+impl ChainState {
     /// When the segment is done with, and what decided that.
     fn done(&self) -> Option<(Instant, Option<Condition>)> {
-        let Rule { waits, all, through } = self.rule;
+        let ChainRule { waits, all, through } = self.rule;
         let mut waits = waits.into_iter().flatten().peekable();
         if waits.peek().is_none() {
             return self.arrived.map(|at| (at, None));
@@ -160,7 +160,7 @@ impl Link {
     fn met(&self, wait: Wait) -> Option<Instant> {
         match wait {
             Wait::Delay(time) => self.arrived.map(|at| at + time),
-            Wait::Step => self.stepped,
+            Wait::HomingStep => self.stepped,
             Wait::Position { at, .. } => at,
         }
     }
@@ -178,7 +178,7 @@ mod tests {
 
     /// When a segment gives way that begins at 0, gets its edge at 30 and arrives at 100.
     fn done(waits: &[Wait], all: bool, through: bool) -> Option<(Instant, Option<Condition>)> {
-        let mut rule = Rule { all, through, ..Rule::default() };
+        let mut rule = ChainRule { all, through, ..ChainRule::default() };
         rule.waits.iter_mut().zip(waits).for_each(|(slot, wait)| *slot = Some(*wait));
         let mut chain = Chain::default();
         chain.begin(ms(0), rule);
@@ -195,23 +195,32 @@ mod tests {
     fn conditions_alone() {
         let place = |at| Wait::Position { place: 7, at: Some(ms(at)) };
         assert_eq!(done(&[DELAY], false, true), Some((ms(150), Some(Condition::Delay))));
-        assert_eq!(done(&[Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
+        assert_eq!(
+            done(&[Wait::HomingStep], false, true),
+            Some((ms(30), Some(Condition::HomingStep)))
+        );
         assert_eq!(done(&[place(60)], false, true), Some((ms(60), Some(Condition::Position))));
         assert_eq!(done(&[Wait::Position { place: 7, at: None }], false, true), None);
         // Without `through` the segment is done first.
-        assert_eq!(done(&[Wait::Step], false, false), Some((ms(100), Some(Condition::Step))));
+        assert_eq!(
+            done(&[Wait::HomingStep], false, false),
+            Some((ms(100), Some(Condition::HomingStep)))
+        );
         assert_eq!(done(&[DELAY], false, false), Some((ms(150), Some(Condition::Delay))));
     }
 
     #[test]
     fn conditions_together() {
-        let either = done(&[DELAY, Wait::Step], false, true);
-        assert_eq!(either, Some((ms(30), Some(Condition::Step))));
-        let both = done(&[DELAY, Wait::Step], true, true);
+        let either = done(&[DELAY, Wait::HomingStep], false, true);
+        assert_eq!(either, Some((ms(30), Some(Condition::HomingStep))));
+        let both = done(&[DELAY, Wait::HomingStep], true, true);
         assert_eq!(both, Some((ms(150), Some(Condition::Delay))));
         let never = Wait::Position { place: 7, at: None };
-        assert_eq!(done(&[never, Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
-        assert_eq!(done(&[never, Wait::Step], true, true), None);
+        assert_eq!(
+            done(&[never, Wait::HomingStep], false, true),
+            Some((ms(30), Some(Condition::HomingStep)))
+        );
+        assert_eq!(done(&[never, Wait::HomingStep], true, true), None);
     }
 
     #[test]
@@ -223,7 +232,7 @@ mod tests {
     #[test]
     fn what_never_moves_comes_to_an_end() {
         let mut chain = Chain::default();
-        let rule = Rule { through: true, ..Rule::default() };
+        let rule = ChainRule { through: true, ..ChainRule::default() };
         let mut steps = 0;
         chain.begin(ms(5), rule);
         while chain.is_under_way() {

@@ -1,13 +1,13 @@
 //! State machines of a drive, one a file. They speak words; none knows a register, a vendor or a bus.
 
 mod chain;
-mod hold;
 mod motor;
 mod phase;
 mod servo;
+mod watchdog;
 
-pub use chain::{Chain, MOST_WAITS, Rule, Wait};
-pub use hold::Hold;
+pub use chain::{Chain, ChainRule, MOST_WAITS, Wait};
 pub use motor::{Commands, Control, HomeOrder, Jog, Motor, Ramp, Slope, Wants};
-pub use phase::{Phase, Replan, Stage};
+pub use phase::{MotionReport, Phase, Replan};
 pub use servo::{Servo, Trip};
+pub use watchdog::Watchdog;

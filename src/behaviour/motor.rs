@@ -10,29 +10,29 @@
 //! as the axis is to be behind, so that it goes on at its speed.
 
 mod block;
-mod due;
 mod goal;
 mod home;
 mod limits;
-mod look;
+mod observe;
 mod replan;
 mod suspend;
+mod timers;
 
 pub use goal::{Ramp, Slope};
 pub use home::HomeOrder;
-pub use look::Control;
+pub use observe::Control;
 pub use suspend::Commands;
 
-use super::phase::{Phase, Stage};
+use super::phase::{MotionReport, Phase};
 use crate::event::Ignored;
-use crate::motion::{Lag, Machine, State, Trajectory, Way};
+use crate::motion::{CrossingDirection, Lag, Machine, State, Trajectory};
 use crate::time::{Duration, Instant};
-use crate::words::{HomeEnd, Inputs, LimitStop};
-use due::Due;
+use crate::vocabulary::{HomeEnd, Inputs, LimitStop};
 use goal::Goal;
 use home::Homing;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
+use timers::MotorTimers;
 
 /// What the levels ask for right now.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -43,7 +43,7 @@ pub struct Wants {
     pub stop: bool,
     /// Stand at once.
     pub quick_stop: bool,
-    /// Hold a move back, to go on later.
+    /// Watchdog a move back, to go on later.
     pub pause: bool,
     /// What becomes of the commands of moves.
     pub commands: Commands,
@@ -102,8 +102,8 @@ pub struct Motor {
     /// It has told that it is too far from its command, and still is.
     deviates: bool,
     homing: Option<Box<Homing>>,
-    due: Due,
-    told: VecDeque<Stage>,
+    due: MotorTimers,
+    told: VecDeque<MotionReport>,
 }
 
 impl Motor {
@@ -132,7 +132,7 @@ impl Motor {
             arrived: false,
             deviates: false,
             homing: None,
-            due: Due::default(),
+            due: MotorTimers::default(),
             told: VecDeque::with_capacity(8),
         }
     }
@@ -197,8 +197,8 @@ impl Motor {
         let mark = |count: i64, way| self.trajectory.crossing(count as f64, way, now);
         match position.cmp(&self.commanded(now)) {
             Ordering::Equal => Some(now),
-            Ordering::Greater => mark(position, Way::Rising),
-            Ordering::Less => mark(position.saturating_add(1), Way::Falling),
+            Ordering::Greater => mark(position, CrossingDirection::Rising),
+            Ordering::Less => mark(position.saturating_add(1), CrossingDirection::Falling),
         }
     }
 
@@ -208,7 +208,7 @@ impl Motor {
     }
 
     /// The next thing to be told.
-    pub fn poll_stage(&mut self) -> Option<Stage> {
+    pub fn poll_stage(&mut self) -> Option<MotionReport> {
         self.told.pop_front()
     }
 
@@ -270,10 +270,10 @@ impl Motor {
         self.lose_origin(HomeEnd::Replaced);
         self.forward = target >= here;
         self.begin(now, trajectory, Phase::Moving);
-        self.told.push_back(Stage::Moves(target));
+        self.told.push_back(MotionReport::Moves(target));
         if self.wants.pause {
             self.paused = true;
-            self.told.push_back(Stage::Pauses);
+            self.told.push_back(MotionReport::Pauses);
         }
         self.advance(now);
         Ok(())
@@ -296,7 +296,7 @@ impl Motor {
             (false, _) => {}
         }
         self.go(now, ramp, Phase::Running);
-        self.told.push_back(Stage::Runs(ramp.speed));
+        self.told.push_back(MotionReport::Runs(ramp.speed));
         self.advance(now);
         Ok(())
     }
@@ -321,7 +321,7 @@ impl Motor {
             self.goal = Goal::Stop(Slope::Rate(decel), 0.0);
             let trajectory = Trajectory::stop(now, self.state(now), decel);
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(Stage::Stops);
+            self.told.push_back(MotionReport::Stops);
             self.advance(now);
         }
     }
@@ -395,7 +395,7 @@ impl Motor {
         let may = !self.is_held() && !self.jog_spent && !self.is_at_limit(now, forward);
         if free && may {
             self.go(now, ramp, Phase::Jogging { forward });
-            self.told.push_back(Stage::Jogs(ramp.speed));
+            self.told.push_back(MotionReport::Jogs(ramp.speed));
         } else if matches!(self.phase, Phase::Jogging { .. }) {
             self.brake(now);
         }
@@ -423,7 +423,7 @@ impl Motor {
             self.lose_origin(HomeEnd::Stopped);
             let trajectory = self.slow_down(now);
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(Stage::Stops);
+            self.told.push_back(MotionReport::Stops);
         }
     }
 
@@ -440,7 +440,7 @@ impl Motor {
             self.goal = Goal::None;
             let trajectory = Trajectory::halt(now, self.state(now));
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(Stage::Stops);
+            self.told.push_back(MotionReport::Stops);
         }
     }
 
@@ -449,7 +449,7 @@ impl Motor {
             self.lose_origin(HomeEnd::PowerOff);
             let rests = self.speed(now) == 0.0;
             self.run_out(now);
-            self.told.extend((!rests).then_some(Stage::Coasts));
+            self.told.extend((!rests).then_some(MotionReport::Coasts));
             self.advance(now);
         }
     }

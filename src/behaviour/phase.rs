@@ -1,7 +1,7 @@
 //! What an axis is doing, and what it tells about it.
 
 use crate::time::Duration;
-use crate::words::{HomeEnd, Step};
+use crate::vocabulary::{HomeEnd, HomingStep};
 
 /// What an axis is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,14 +41,14 @@ pub enum Replan {
     /// Getting slower; likewise.
     Decel(f64),
     /// How far a homing goes on from the origin.
-    Way(i64),
+    HomeOffset(i64),
     /// How long a homing may take since it began.
     TimeLimit(Option<Duration>),
 }
 
 /// A new phase, as it is told: machine counts, counts per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stage {
+pub enum MotionReport {
     /// It goes to this position.
     Moves(i64),
     /// It goes at this speed by order.
@@ -81,9 +81,9 @@ pub enum Stage {
     /// It should be farther from where it is than is allowed.
     Deviates,
     /// It takes a homing step, at this speed.
-    Seeks(Step, f64),
+    Seeks(HomingStep, f64),
     /// What a homing step waited for has come at this position.
-    Finds(Step, i64),
+    Finds(HomingStep, i64),
     /// It has come to a limit instead.
     FindsLimit {
         /// The positive one?

@@ -7,7 +7,7 @@
 
 use crate::event::{Change, Ignored};
 use crate::time::{Duration, Instant};
-use crate::words::{AlarmCause, AlarmCauses};
+use crate::vocabulary::{AlarmCause, AlarmCauses};
 
 /// An alarm as a drive raises it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub struct Servo {
     /// The power stage stays on despite the alarm, until the axis stands.
     braking: bool,
     /// Causes that are still there, so that no reset helps.
-    standing: AlarmCauses,
+    active_causes: AlarmCauses,
     was_enabled: bool,
 }
 
@@ -53,7 +53,7 @@ impl Servo {
             latched: enabled,
             alarm: None,
             braking: false,
-            standing: AlarmCauses::default(),
+            active_causes: AlarmCauses::default(),
             was_enabled: false,
         }
     }
@@ -107,19 +107,19 @@ impl Servo {
             self.starts_until = None;
             tell(Change::Ready);
         }
-        self.settle(tell);
+        self.update(tell);
     }
 
     /// A level that keeps a power stage that is off from being switched on, whatever asks for it.
     pub fn inhibit(&mut self, inhibited: bool, tell: &mut impl FnMut(Change)) {
         self.inhibited = inhibited;
-        self.settle(tell);
+        self.update(tell);
     }
 
     /// The level that asks for the power stage, and the one that forbids it.
     pub fn want(&mut self, wanted: bool, released: bool, tell: &mut impl FnMut(Change)) {
         (self.wanted, self.released) = (wanted, released);
-        self.settle(tell);
+        self.update(tell);
     }
 
     /// A command that asks for the power stage, or takes that back. Under an alarm, or while a level releases it, nothing
@@ -132,7 +132,7 @@ impl Servo {
         if !on || !(self.released || self.alarm.is_some()) {
             self.latched = on;
         }
-        self.settle(tell);
+        self.update(tell);
         match (on, before, self.is_enabled()) {
             (true, true, _) => Err(Ignored::AlreadyOn),
             (true, false, false) => Err(self.why_off()),
@@ -150,18 +150,18 @@ impl Servo {
             self.alarm = Some(trip);
             tell(Change::Alarm { cause: trip.cause, code: trip.code });
         }
-        self.settle(tell);
+        self.update(tell);
     }
 
     /// The axis has stopped: nothing keeps the power stage on any longer.
     pub fn braked(&mut self, tell: &mut impl FnMut(Change)) {
         self.braking = false;
-        self.settle(tell);
+        self.update(tell);
     }
 
     /// The causes that stand: while one does, no reset clears its alarm.
-    pub fn stand(&mut self, standing: AlarmCauses) {
-        self.standing = standing;
+    pub fn set_active_causes(&mut self, active_causes: AlarmCauses) {
+        self.active_causes = active_causes;
     }
 
     /// Clears the alarm.
@@ -185,7 +185,7 @@ impl Servo {
     ) -> Result<(), Ignored> {
         match self.alarm.ok_or(Ignored::NoAlarm)?.cause {
             other if other != cause => Err(Ignored::OtherAlarm(other)),
-            _ if self.standing.has(cause) => Err(Ignored::CauseStands(cause)),
+            _ if self.active_causes.has(cause) => Err(Ignored::CauseStands(cause)),
             _ => {
                 self.clear(tell);
                 Ok(())
@@ -201,7 +201,7 @@ impl Servo {
         let Trip { cause, resettable, .. } = self.alarm.ok_or(Ignored::NoAlarm)?;
         match () {
             () if !resettable => Err(Ignored::NotResettable(cause)),
-            () if self.standing.has(cause) => Err(Ignored::CauseStands(cause)),
+            () if self.active_causes.has(cause) => Err(Ignored::CauseStands(cause)),
             () => Ok(()),
         }
     }
@@ -209,10 +209,10 @@ impl Servo {
     fn clear(&mut self, tell: &mut impl FnMut(Change)) {
         (self.alarm, self.braking) = (None, false);
         tell(Change::AlarmCleared);
-        self.settle(tell);
+        self.update(tell);
     }
 
-    fn settle(&mut self, tell: &mut impl FnMut(Change)) {
+    fn update(&mut self, tell: &mut impl FnMut(Change)) {
         let enabled = self.is_enabled();
         // Whoever switches it off meanwhile ends the braking for good.
         self.braking &= enabled;
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn no_reset_while_the_cause_stands_or_where_none_helps() {
         let (servo, _) = after(|servo, mut tell| {
-            servo.stand(AlarmCauses::default().with(AlarmCause::Forced, true));
+            servo.set_active_causes(AlarmCauses::default().with(AlarmCause::Forced, true));
             servo.trip(FORCED, false, &mut tell);
             let stands = Err(Ignored::CauseStands(AlarmCause::Forced));
             assert_eq!(servo.reset(&mut tell), stands);

@@ -37,9 +37,9 @@ pub struct Device {
     pub setups: Vec<Setup>,
 }
 
-/// Which wish of a [`DeviceSpec`] can't be met.
+/// Which setting of a [`DeviceSpec`] can't be met.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Wish {
+pub enum OverrideKey {
     /// The unit address.
     Unit,
     /// A start value.
@@ -52,11 +52,11 @@ pub enum Wish {
     Terminal(usize),
 }
 
-/// Why a wish can't be met.
+/// Why a setting can't be met.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SpecProblem {
     /// Which.
-    pub wish: Wish,
+    pub override_key: OverrideKey,
     /// Why.
     pub what: String,
     /// What to do.
@@ -67,16 +67,16 @@ impl Device {
     /// Sets up a device of `model` as `spec` says.
     ///
     /// # Errors
-    /// Every wish that the model can't meet.
+    /// Every setting that the model can't meet.
     pub fn new(model: Arc<Model>, spec: &DeviceSpec) -> Result<Self, Vec<SpecProblem>> {
         let mut problems = Vec::new();
         let mut values = Vec::new();
         for (name, value) in &spec.set {
             match start_value(&model, name, *value) {
                 Ok((row, _)) if values.iter().any(|(other, _)| *other == row) => {
-                    let wish = Wish::SetName(name.clone());
+                    let override_key = OverrideKey::SetName(name.clone());
                     let what = format!("{} is set twice", model.map.row(row).label());
-                    problems.push(SpecProblem { wish, what, advice: None });
+                    problems.push(SpecProblem { override_key, what, advice: None });
                 }
                 Ok(value) => values.push(value),
                 Err(problem) => problems.push(problem),
@@ -85,7 +85,11 @@ impl Device {
         if let (Some(name), Some(_)) = (names_unit(&model, spec), spec.unit) {
             let what = format!("{name} holds the unit address, which `unit` says already");
             let advice = Some("give one of the two".into());
-            problems.push(SpecProblem { wish: Wish::SetName(name.clone()), what, advice });
+            problems.push(SpecProblem {
+                override_key: OverrideKey::SetName(name.clone()),
+                what,
+                advice,
+            });
         }
         let switches = switches(&model, spec, &mut problems);
         let terminals = terminals(&model, spec, &mut problems);
@@ -127,7 +131,7 @@ fn names_unit<'a>(model: &Model, spec: &'a DeviceSpec) -> Option<&'a String> {
 }
 
 fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), SpecProblem> {
-    let wish = Wish::Set(name.to_owned());
+    let override_key = OverrideKey::Set(name.to_owned());
     let Some(id) = model.map.find(name) else {
         return Err(no_register(model, name));
     };
@@ -139,30 +143,30 @@ fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), Sp
     match value {
         _ if model.wiring.shows(id).is_some() => {
             let what = format!("{} shows what the drive computes and can't be set", row.label());
-            Err(SpecProblem { wish, what, advice: None })
+            Err(SpecProblem { override_key, what, advice: None })
         }
         Some(value) => Ok((id, row.kind.raw(value))),
         None => {
             let what = format!("{} takes {}, not {}", row.label(), row.range_text(), asked);
-            Err(SpecProblem { wish, what, advice: None })
+            Err(SpecProblem { override_key, what, advice: None })
         }
     }
 }
 
 fn no_register(model: &Model, name: &str) -> SpecProblem {
-    let wish = Wish::SetName(name.to_owned());
+    let override_key = OverrideKey::SetName(name.to_owned());
     if model.options.iter().any(|option| option.name == name) {
         let (what, advice) = (format!("`{name}` is an option, not a register"), "see `options`");
-        return SpecProblem { wish, what, advice: Some(advice.into()) };
+        return SpecProblem { override_key, what, advice: Some(advice.into()) };
     }
     if let Ok(address) = name.parse::<u16>() {
         let what = format!("no register at 0x{address:04X}");
-        return SpecProblem { wish, what, advice: None };
+        return SpecProblem { override_key, what, advice: None };
     }
     let ids = model.map.rows().map(|(_, row)| row.id.as_str());
     let options = model.options.iter().map(|option| option.name.as_str());
     let advice = suggest::did_you_mean(name, ids.chain(options));
-    SpecProblem { wish, what: format!("no register or option `{name}`"), advice }
+    SpecProblem { override_key, what: format!("no register or option `{name}`"), advice }
 }
 
 fn unit_value(
@@ -174,14 +178,14 @@ fn unit_value(
     let row = model.map.row(model.line.unit.row);
     let value = i64::from(unit) + station as i64;
     if !row.admits(value) || value == 0 {
-        if problems.iter().any(|problem| problem.wish == Wish::Unit) {
+        if problems.iter().any(|problem| problem.override_key == OverrideKey::Unit) {
             return None;
         }
         let what = match value {
             0 => "unit 0 is for broadcasts, and no drive answers to it".into(),
             _ => format!("{} takes {}, not {value}", row.label(), row.range_text()),
         };
-        problems.push(SpecProblem { wish: Wish::Unit, what, advice: None });
+        problems.push(SpecProblem { override_key: OverrideKey::Unit, what, advice: None });
         return None;
     }
     Some((model.line.unit.row, row.kind.raw(value)))
@@ -194,7 +198,7 @@ fn switches(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) -
     let most = ((1u16 << count) - 1) as u8;
     let address = switches & ((1u16 << of_address) - 1) as u8;
     let mut refuse = |what: String, advice: Option<String>| {
-        problems.push(SpecProblem { wish: Wish::Switches, what, advice });
+        problems.push(SpecProblem { override_key: OverrideKey::Switches, what, advice });
     };
     if count == 0 {
         refuse("this drive has no DIP switches".into(), Some("use `unit`".into()));
@@ -216,7 +220,7 @@ fn terminals(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) 
         match names.iter().position(|it| it == name) {
             Some(index) => signals |= 1 << index,
             None => problems.push(SpecProblem {
-                wish: Wish::Terminal(i),
+                override_key: OverrideKey::Terminal(i),
                 what: format!("no input terminal `{name}`"),
                 advice: Some(match names.as_slice() {
                     [] => "this drive has none".into(),

@@ -1,17 +1,17 @@
 //! Fault rules of a line: read for the drives that are on it.
 
 use super::{BenchLine, PortSpec};
-use crate::fault::{self, Faults, Habits, NoRow, Site, Weather};
+use crate::fault::{self, FaultContext, FaultSet, Faults, LineBehaviour, NoRow};
 use crate::problem::{Problem, suggest};
 use crate::wire::Span;
 
-impl Site for BenchLine {
+impl FaultContext for BenchLine {
     fn is_tcp(&self) -> bool {
         matches!(self.port, PortSpec::Tcp(_))
     }
 
-    fn habits(&self) -> &Habits {
-        &self.habits
+    fn line_behaviour(&self) -> &LineBehaviour {
+        &self.line_behaviour
     }
 
     /// Where all drives that know the name have the row. One place must be right for all of them: a rule
@@ -43,7 +43,7 @@ impl BenchLine {
     ///
     /// # Errors
     /// Everything that is wrong with it, each with its place in `spec`.
-    pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<Weather, Vec<Problem>> {
+    pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<FaultSet, Vec<Problem>> {
         fault::parse(spec, self, taken)
     }
 
@@ -52,8 +52,8 @@ impl BenchLine {
     /// # Errors
     /// As [`fault`](Self::fault).
     pub fn add_fault(&mut self, spec: &str) -> Result<(), Vec<Problem>> {
-        let weather = self.fault(spec, &self.rule_names())?;
-        self.put(weather);
+        let fault_set = self.fault(spec, &self.rule_names())?;
+        self.put(fault_set);
         Ok(())
     }
 
@@ -63,13 +63,14 @@ impl BenchLine {
     }
 
     /// Puts what was read behind what the line has.
-    pub(super) fn put(&mut self, weather: Weather) {
-        self.faults.extend(weather.rules);
-        self.habits = std::mem::take(&mut self.habits).and(weather.habits);
+    pub(super) fn put(&mut self, fault_set: FaultSet) {
+        self.faults.extend(fault_set.rules);
+        self.line_behaviour =
+            std::mem::take(&mut self.line_behaviour).and(fault_set.line_behaviour);
     }
 
     /// The rules, none of which has acted yet.
-    pub(super) fn weather(&self, seed: u64) -> Faults {
+    pub(super) fn fault_set(&self, seed: u64) -> Faults {
         let mut faults = Faults::new(seed, &self.name);
         for rule in &self.faults {
             // Names are unique once they are read.

@@ -4,7 +4,7 @@
 use super::raw::{RawIndex, RawMachine};
 use crate::model::Wiring;
 use crate::motion::{Index, Machine, Zone};
-use crate::words::{Input, Method, Step, Until, Word};
+use crate::vocabulary::{HomingStep, Input, Method, Named, Until};
 
 /// What is wrong with a machine: at which key, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,7 +114,7 @@ fn is_wired(wiring: &Wiring, signal: Input) -> bool {
 }
 
 fn looks_for_index(wiring: &Wiring) -> bool {
-    let waits = |step: Step| matches!(step.until, Until::Index(_) | Until::SameIndex);
+    let waits = |step: HomingStep| matches!(step.until, Until::Index(_) | Until::SameIndex);
     let looks = |it: &Method| it.index || it.all_steps().any(waits);
     wiring.homing.iter().flat_map(|it| it.methods.values()).any(looks)
 }

@@ -5,7 +5,7 @@
 
 mod device;
 mod faults;
-mod habits;
+mod line_behaviour;
 mod machine;
 mod match_line;
 mod parse;
@@ -13,7 +13,7 @@ pub mod raw;
 mod state;
 mod wire_spec;
 
-pub use device::{Device, DeviceSpec, SpecProblem, Wish};
+pub use device::{Device, DeviceSpec, OverrideKey, SpecProblem};
 pub use machine::{MachineProblem, machine};
 pub use match_line::match_line;
 pub use parse::{kind_of, parse, parse_saved};
@@ -21,7 +21,7 @@ pub use state::{Saved, StateFile};
 pub use wire_spec::{PATIENT_GAP, WireSpec};
 
 use crate::bus::Bus;
-use crate::fault::{Habits, Rule};
+use crate::fault::{FaultRule, LineBehaviour};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use std::sync::Arc;
@@ -89,9 +89,9 @@ pub struct BenchLine {
     /// What is on it.
     pub devices: Vec<Device>,
     /// Fault rules, in order.
-    pub faults: Vec<Rule>,
+    pub faults: Vec<FaultRule>,
     /// What the line always does.
-    pub habits: Habits,
+    pub line_behaviour: LineBehaviour,
 }
 
 /// Where masters reach a line.
@@ -132,8 +132,8 @@ impl BenchLine {
     /// the line's mode; on Modbus TCP there is none. What its fault rules draw depends on `seed`.
     pub fn bus(&self, seed: u64) -> Bus {
         let mut bus = Bus::new();
-        bus.set_faults(self.weather(seed));
-        bus.set_habits(self.habits.clone());
+        bus.set_faults(self.fault_set(seed));
+        bus.set_line_behaviour(self.line_behaviour.clone());
         if !matches!(self.port, PortSpec::Tcp(_)) {
             bus.set_mode(self.wire.mode);
         }

@@ -1,10 +1,10 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
-use super::habits::{habits, strangers};
+use super::line_behaviour::{line_behaviour, strangers};
 use super::raw::{KEYS, RawBenchDrive, RawBenchLine, RawPacing};
 use super::{
-    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, PortSpec, Saved, SpecProblem,
-    WireSpec, Wish, machine, match_line,
+    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, OverrideKey, PortSpec, Saved,
+    SpecProblem, WireSpec, machine, match_line,
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
@@ -51,7 +51,7 @@ pub fn parse_saved(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let mut reader = Reader { library, saved, models: BTreeMap::new(), problems };
+    let mut reader = BenchReader { library, saved, models: BTreeMap::new(), problems };
     let bench = reader.bench(&file);
     match reader.problems.is_empty() {
         true => Ok(bench),
@@ -61,11 +61,11 @@ pub fn parse_saved(
 
 /// Everything of the file but its lines, which are read one by one.
 #[derive(serde::Deserialize)]
-struct Head {
+struct BenchHead {
     seed: Option<u64>,
 }
 
-struct Reader<'a> {
+struct BenchReader<'a> {
     library: &'a dyn Library,
     saved: &'a mut Saved,
     /// Drives of one model with the same options share it.
@@ -73,11 +73,11 @@ struct Reader<'a> {
     problems: Vec<Problem>,
 }
 
-impl Reader<'_> {
+impl BenchReader<'_> {
     fn bench(&mut self, file: &Value) -> Bench {
         let mut head = file.clone();
         let lines = head.as_mapping_mut().and_then(|head| head.remove("lines"));
-        let head: Option<Head> = section::read(&head, &Path::root(), KEYS, &mut self.problems);
+        let head: Option<BenchHead> = section::read(&head, &Path::root(), KEYS, &mut self.problems);
         let seed = head.and_then(|head| head.seed);
         let path = Path::root().key("lines");
         let items = match &lines {
@@ -227,7 +227,8 @@ impl Reader<'_> {
         match Device::new(model, &spec) {
             Ok(device) => Some(device),
             Err(problems) => {
-                self.problems.extend(problems.into_iter().map(|problem| at_wish(problem, path)));
+                self.problems
+                    .extend(problems.into_iter().map(|problem| at_override_key(problem, path)));
                 None
             }
         }
@@ -299,9 +300,9 @@ impl Reader<'_> {
                 }
             }
         }
-        let habits = habits(raw, &port, path, &mut self.problems);
-        strangers(&habits, &devices, path, &mut self.problems);
-        let mut line = BenchLine { name, port, wire, devices, faults: Vec::new(), habits };
+        let line_behaviour = line_behaviour(raw, &port, path, &mut self.problems);
+        strangers(&line_behaviour, &devices, path, &mut self.problems);
+        let mut line = BenchLine { name, port, wire, devices, faults: Vec::new(), line_behaviour };
         self.faults(raw, &mut line, path);
         Some(line)
     }
@@ -310,8 +311,8 @@ impl Reader<'_> {
         for (i, raw) in raw.faults.iter().enumerate() {
             let path = path.key("faults").index(i);
             let taken = line.rule_names();
-            let weather = fault::compile(raw, &path, line, &taken, &mut self.problems);
-            line.put(weather);
+            let fault_set = fault::compile(raw, &path, line, &taken, &mut self.problems);
+            line.put(fault_set);
         }
     }
 
@@ -351,13 +352,13 @@ fn of_options(problem: Problem, file: &str, path: &Path) -> Problem {
     Problem::key(path.key("options"), what).advise(format!("see `drivemu check {file}`"))
 }
 
-fn at_wish(problem: SpecProblem, path: &Path) -> Problem {
-    let (path, at) = match &problem.wish {
-        Wish::Unit => (path.key("unit"), At::Value),
-        Wish::Set(name) => (path.key("set").key(name), At::Value),
-        Wish::SetName(name) => (path.key("set").key(name), At::Key),
-        Wish::Switches => (path.key("switches"), At::Value),
-        Wish::Terminal(i) => (path.key("terminals").index(*i), At::Value),
+fn at_override_key(problem: SpecProblem, path: &Path) -> Problem {
+    let (path, at) = match &problem.override_key {
+        OverrideKey::Unit => (path.key("unit"), At::Value),
+        OverrideKey::Set(name) => (path.key("set").key(name), At::Value),
+        OverrideKey::SetName(name) => (path.key("set").key(name), At::Key),
+        OverrideKey::Switches => (path.key("switches"), At::Value),
+        OverrideKey::Terminal(i) => (path.key("terminals").index(*i), At::Value),
     };
     Problem { path, at, what: problem.what, advice: problem.advice, mark: None }
 }

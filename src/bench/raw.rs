@@ -112,14 +112,14 @@ pub struct RawBenchDrive {
 fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i64>, D::Error> {
     #[derive(Deserialize, PartialEq, Eq, PartialOrd, Ord)]
     #[serde(untagged, expecting = "a register is a name or an address")]
-    enum Key {
+    enum BenchKey {
         Address(u16),
         Name(String),
     }
-    let values = BTreeMap::<Key, i64>::deserialize(from)?.into_iter();
+    let values = BTreeMap::<BenchKey, i64>::deserialize(from)?.into_iter();
     let named = |(key, value)| match key {
-        Key::Address(address) => (address.to_string(), value),
-        Key::Name(name) => (name, value),
+        BenchKey::Address(address) => (address.to_string(), value),
+        BenchKey::Name(name) => (name, value),
     };
     Ok(values.map(named).collect())
 }

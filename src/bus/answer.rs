@@ -2,8 +2,8 @@
 
 use super::{Bus, LinkId, Output};
 use crate::event::{DriveId, Transaction, What};
-use crate::fault::Strike;
-use crate::line::{Foreign, Heard};
+use crate::fault::FaultHit;
+use crate::line::{Foreign, LineEvent};
 use crate::time::Instant;
 use crate::wire::function::{EXCEPTION, READ};
 use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};
@@ -51,22 +51,24 @@ impl Bus {
         let (tcp, sole) = (it.tcp, self.drives.len() == 1 && self.drives[0].is_powered());
         Some(match it.line.next(now, &self.units)? {
             // Modbus TCP lets a client say 0 or 255 for "whoever is there" (messaging on TCP/IP, 4.4.1.2).
-            Heard::Request(adu) if adu.unit == BROADCAST && !(tcp && sole) => broadcast(adu, tcp),
-            Heard::Foreign(Foreign::Request(adu)) if adu.unit == 0xFF && tcp && sole => {
+            LineEvent::Request(adu) if adu.unit == BROADCAST && !(tcp && sole) => {
+                broadcast(adu, tcp)
+            }
+            LineEvent::Foreign(Foreign::Request(adu)) if adu.unit == 0xFF && tcp && sole => {
                 request(adu, tcp)
             }
-            Heard::Request(adu) => request(adu, tcp),
-            Heard::Foreign(foreign) => Taken::Told(told(foreign)),
-            Heard::BadCrc { bytes, crc } => {
+            LineEvent::Request(adu) => request(adu, tcp),
+            LineEvent::Foreign(foreign) => Taken::Told(told(foreign)),
+            LineEvent::BadCrc { bytes, crc } => {
                 Taken::BadCrc(What::BadCrc { frame: Frame::from_slice(bytes), crc, answered: None })
             }
-            Heard::BadAscii { bytes, why } => {
+            LineEvent::BadAscii { bytes, why } => {
                 Taken::Told(What::BadAscii { characters: Frame::from_slice(bytes), why })
             }
-            Heard::Noise { bytes, len, why } => {
+            LineEvent::Noise { bytes, len, why } => {
                 Taken::Told(What::Noise { head: Inline::from_slice(bytes), len, why })
             }
-            Heard::Lost(why) => Taken::Lost(What::Lost(why)),
+            LineEvent::Lost(why) => Taken::Lost(What::Lost(why)),
         })
     }
 
@@ -76,29 +78,29 @@ impl Bus {
         let now = self.now;
         // Whoever says 0 or 255 on TCP means this drive, and a rule about its unit means that too.
         let asked = if addressed.is_some() { unit } else { self.drive(id).unit() };
-        let mut strike = self.faults.strike(now, asked, &request);
+        let mut fault_hit = self.faults.fault_hit(now, asked, &request);
         let mut repeated = None;
         let adu = Adu { unit, pdu: &request };
         let function = adu.function();
         let exception = |code| Response::Exception(Exception { function, code }).encode();
-        if let Some(code) = strike.as_ref().and_then(Strike::exception) {
-            self.send(link, id, adu, exception(code), strike.as_mut());
-        } else if !strike.as_ref().is_some_and(Strike::loses_request) {
+        if let Some(code) = fault_hit.as_ref().and_then(FaultHit::exception) {
+            self.send(link, id, adu, exception(code), fault_hit.as_mut());
+        } else if !fault_hit.as_ref().is_some_and(FaultHit::loses_request) {
             let drive = &mut self.drives[usize::from(id.0)];
             let (answer, refusal) = match drive.request(now, &request) {
                 Ok(response) => (response.encode(), None),
                 Err(refusal) => (exception(refusal.code), Some(refusal)),
             };
-            let given = drive.given();
+            let issued = drive.issued();
             self.count(id, function);
             // What an answer confirms must be there after a power failure.
             self.keep(id);
-            self.send(link, id, adu, answer, strike.as_mut());
+            self.send(link, id, adu, answer, fault_hit.as_mut());
             self.emit(What::Transaction(Transaction { drive: id, unit, request, answer, refusal }));
-            let arrives = strike.as_ref().map_or(Some(now), |it| it.arrives(now));
-            repeated = self.unheard.executed(now, id, request, given, arrives);
+            let arrives = fault_hit.as_ref().map_or(Some(now), |it| it.arrives(now));
+            repeated = self.repeat_detector.executed(now, id, request, issued, arrives);
         }
-        self.tell(unit, strike.as_ref());
+        self.tell(unit, fault_hit.as_ref());
         self.after_drive(id);
         if let Some((action, count)) = repeated {
             self.emit(What::RepeatedCommand { drive: id, unit, action, count });
@@ -107,13 +109,13 @@ impl Bus {
 
     /// Every drive executes, none answers (serial line, 2.1).
     fn broadcast(&mut self, link: LinkId, request: Pdu) {
-        let strike = self.faults.strike(self.now, BROADCAST, &request);
-        if strike.as_ref().is_some_and(Strike::loses_request) {
-            return self.tell(BROADCAST, strike.as_ref());
+        let fault_hit = self.faults.fault_hit(self.now, BROADCAST, &request);
+        if fault_hit.as_ref().is_some_and(FaultHit::loses_request) {
+            return self.tell(BROADCAST, fault_hit.as_ref());
         }
-        if strike.is_some() {
+        if fault_hit.is_some() {
             self.echo(link, Adu { unit: BROADCAST, pdu: &request });
-            self.tell(BROADCAST, strike.as_ref());
+            self.tell(BROADCAST, fault_hit.as_ref());
         }
         if request.first() == Some(&READ) {
             return self.emit(What::BroadcastRead { request });

@@ -2,10 +2,10 @@
 
 use super::Bus;
 use crate::drive::Drive;
-use crate::event::{DriveId, Remark, RemarkId, Trouble, What};
-use crate::fault::{Habits, Rule};
+use crate::event::{DeviceFault, DriveId, Remark, RemarkId, What};
+use crate::fault::{FaultRule, LineBehaviour};
 use crate::time::Duration;
-use crate::words::{AlarmCause, Word};
+use crate::vocabulary::{AlarmCause, Named};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
@@ -14,7 +14,7 @@ use thiserror::Error;
 pub const BETWEEN_EDGES: RangeInclusive<Duration> =
     Duration::from_micros(1)..=Duration::from_secs(60);
 
-/// Something to do to a drive, or to the weather on its line.
+/// Something to do to a drive, or to the line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Command {
     /// Put a signal on an input terminal, or take it off.
@@ -34,11 +34,11 @@ pub enum Command {
         cause: AlarmCause,
     },
     /// Something is wrong with the device from now on, or no longer.
-    Trouble {
+    DeviceFault {
         /// Which drive.
         drive: DriveId,
         /// What.
-        trouble: Trouble,
+        device_fault: DeviceFault,
         /// From now on?
         on: bool,
     },
@@ -66,11 +66,11 @@ pub enum Command {
         drive: DriveId,
     },
     /// Put a fault rule behind those of the line.
-    AddFault(Rule),
+    AddFault(FaultRule),
     /// Take the fault rule of that name off the line. What it holds back still leaves.
     RemoveFault(String),
-    /// Give the line these habits from now on, in place of those that it has.
-    SetHabits(Habits),
+    /// Give the line this line behaviour from now on, in place of those that it has.
+    SetLineBehaviour(LineBehaviour),
     /// Tell of a step of a scenario.
     Tell(Remark),
 }
@@ -137,14 +137,14 @@ impl Bus {
         let id = match command {
             Command::Terminal { drive, .. }
             | Command::Raise { drive, .. }
-            | Command::Trouble { drive, .. }
+            | Command::DeviceFault { drive, .. }
             | Command::Bounce { drive, .. }
             | Command::Power { drive, .. }
             | Command::PowerCycle { drive } => drive,
             Command::AddFault(rule) => return self.add_fault(rule),
             Command::RemoveFault(name) => return self.remove_fault(name),
-            Command::SetHabits(habits) => {
-                self.set_habits(habits);
+            Command::SetLineBehaviour(line_behaviour) => {
+                self.set_line_behaviour(line_behaviour);
                 return Ok(Reply::Done);
             }
             Command::Tell(remark) => return Ok(self.remember(remark)),
@@ -163,12 +163,12 @@ impl Bus {
                 }
                 drive.bounce_terminal(now, index, times, every);
             }
-            Command::Trouble { trouble, on, .. } => {
-                if let Trouble::Stuck(index) = trouble {
+            Command::DeviceFault { device_fault, on, .. } => {
+                if let DeviceFault::Stuck(index) = device_fault {
                     terminal(drive, index)?;
                 }
-                if let (false, Trouble::Cause(cause)) =
-                    (drive.set_trouble(now, trouble, on), trouble)
+                if let (false, DeviceFault::Cause(cause)) =
+                    (drive.set_device_fault(now, device_fault, on), device_fault)
                 {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
@@ -191,7 +191,7 @@ impl Bus {
             // These are not for a drive and were carried out above.
             Command::AddFault(_)
             | Command::RemoveFault(_)
-            | Command::SetHabits(_)
+            | Command::SetLineBehaviour(_)
             | Command::Tell(_) => {}
         }
         Ok(Reply::Done)
@@ -208,7 +208,7 @@ impl Bus {
         Reply::Done
     }
 
-    fn add_fault(&mut self, rule: Rule) -> Result<Reply, CommandError> {
+    fn add_fault(&mut self, rule: FaultRule) -> Result<Reply, CommandError> {
         let on_tcp = self.mode.is_none();
         if let Some(why) = rule.act.kind().impossible_on_tcp().filter(|_| on_tcp) {
             return Err(CommandError::IdleFault { name: rule.name, why });

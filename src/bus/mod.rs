@@ -7,38 +7,38 @@
 //!
 //! A serial line has one link. A TCP port has one for each client, all onto the same drives.
 
-mod agenda;
 mod answer;
+mod chatter;
 mod command;
-mod heard;
-mod held;
-mod others;
-mod outlet;
+mod deadlines;
+mod faults;
 mod output;
 mod port;
-mod unheard;
-mod weather;
+mod repeat_detector;
+mod request_counts;
+mod transmit;
+mod transmit_queue;
 
 pub use command::{BETWEEN_EDGES, Command, CommandError, Reply};
-pub use heard::Heard;
 pub use output::{LinkId, Output, Wake, WakeReason};
+pub use request_counts::RequestCounts;
 
 use crate::drive::{Drive, Setup};
 use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
-use crate::fault::{Faults, Habits};
+use crate::fault::{Faults, LineBehaviour};
 use crate::line::{Framing, Line, Units};
 use crate::model::Model;
 use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::{BROADCAST, Frame};
-use agenda::Agenda;
-use held::{Held, Ticket, Timed};
-use others::Others;
-use outlet::LatencyTimer;
+use chatter::ChatterState;
+use deadlines::Deadlines;
+use repeat_detector::RepeatDetector;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
-use unheard::Unheard;
+use transmit::LatencyTimer;
+use transmit_queue::{Ticket, Timed, TransmitQueue};
 
 /// Bytes that a line looks at before it is asked what it heard.
 const CHUNK: usize = 256;
@@ -53,7 +53,7 @@ pub struct Bus {
     /// Device that each drive belongs to: the stations of one device share their power.
     devices: Vec<u16>,
     /// What each drive has heard.
-    heard: Vec<Heard>,
+    request_counts: Vec<RequestCounts>,
     /// What was told of steps.
     remarks: Vec<Remark>,
     /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
@@ -62,16 +62,16 @@ pub struct Bus {
     spoken: Option<Mode>,
     units: Units,
     by_unit: [Option<DriveId>; 256],
-    agenda: Agenda,
+    deadlines: Deadlines,
     faults: Faults,
-    habits: Habits,
+    line_behaviour: LineBehaviour,
     /// The timer of the adapter in front of the master, if there is one.
     adapter: Option<LatencyTimer>,
-    held: Held,
+    queue: TransmitQueue,
     /// Bytes on the wire to the master.
     leaving: Timed,
-    others: Option<Others>,
-    unheard: Unheard,
+    chatter: Option<ChatterState>,
+    repeat_detector: RepeatDetector,
     outputs: VecDeque<Output>,
 }
 
@@ -95,20 +95,20 @@ impl Bus {
             next_link: 0,
             drives: Vec::new(),
             devices: Vec::new(),
-            heard: Vec::new(),
+            request_counts: Vec::new(),
             remarks: Vec::new(),
             mode: None,
             spoken: None,
             units: Units::new(),
             by_unit: [None; 256],
-            agenda: Agenda::default(),
+            deadlines: Deadlines::default(),
             faults: Faults::default(),
-            habits: Habits::default(),
+            line_behaviour: LineBehaviour::default(),
             adapter: None,
-            held: Held::default(),
+            queue: TransmitQueue::default(),
             leaving: Timed::default(),
-            others: None,
-            unheard: Unheard::default(),
+            chatter: None,
+            repeat_detector: RepeatDetector::default(),
             outputs: VecDeque::with_capacity(16),
         }
     }
@@ -119,7 +119,7 @@ impl Bus {
         let id = DriveId(self.drives.len() as u16);
         self.drives.push(Drive::new(model, setup, self.now));
         self.devices.push(device);
-        self.heard.push(Heard::default());
+        self.request_counts.push(RequestCounts::default());
         self.readdress();
         self.after_drive(id);
         id
@@ -155,7 +155,7 @@ impl Bus {
 
     /// Forgets what was to be sent on a link: whoever asked for it has left, and another master is there.
     pub fn forget_replies(&mut self, link: LinkId) {
-        self.held.forget(link);
+        self.queue.forget(link);
         self.leaving.forget(link);
     }
 
@@ -196,7 +196,7 @@ impl Bus {
 
     /// How often a master has given a drive an order again whose answer it can't have heard.
     pub fn repeated_commands(&self, id: DriveId) -> u64 {
-        self.unheard.repeated(id)
+        self.repeat_detector.repeated(id)
     }
 
     /// The time up to which everything has happened.
@@ -207,11 +207,11 @@ impl Bus {
     /// Takes bytes that arrived on `link` at `now`.
     pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
         self.advance_to(now);
-        self.hush();
+        self.interrupt_chatter();
         for chunk in bytes.chunks(CHUNK) {
             let Some(it) = self.links.get_mut(&link) else { return };
             it.line.receive(self.now, chunk);
-            if self.habits.echo {
+            if self.line_behaviour.echo {
                 self.pass(link, &Frame::from_slice(chunk));
             }
             self.listen(link, self.now);
@@ -243,11 +243,11 @@ impl Bus {
                     self.move_line();
                 }
                 WakeReason::Reply(_) => {
-                    let held = self.held.timed.take_first();
-                    held.into_iter().for_each(|(link, frame)| self.transmit(link, frame));
+                    let due = self.queue.timed.take_first();
+                    due.into_iter().for_each(|(link, frame)| self.transmit(link, frame));
                     self.move_line();
                 }
-                WakeReason::Others => self.let_others_speak(),
+                WakeReason::Chatter => self.let_others_speak(),
                 WakeReason::Drive(id) => {
                     self.drives[usize::from(id.0)].advance_to(self.now);
                     self.after_drive(id);
@@ -264,9 +264,13 @@ impl Bus {
         self.drives.iter_mut().for_each(|drive| drive.advance_to(now));
     }
 
-    /// As [`Drive::foresee`].
-    pub fn foresee(&mut self, id: DriveId, side: impl Fn(&Drive) -> Ordering) -> Option<Instant> {
-        self.drives[usize::from(id.0)].foresee(side)
+    /// As [`Drive::next_time_when`].
+    pub fn next_time_when(
+        &mut self,
+        id: DriveId,
+        side: impl Fn(&Drive) -> Ordering,
+    ) -> Option<Instant> {
+        self.drives[usize::from(id.0)].next_time_when(side)
     }
 
     /// What was told of a step.
@@ -303,11 +307,12 @@ impl Bus {
         let silences = self.links.iter().filter_map(silence);
         let through = |(at, link)| Wake { at, reason: WakeReason::Through(link) };
         let reply = |(at, link)| Wake { at, reason: WakeReason::Reply(link) };
-        let others = |others: &Others| Wake { at: others.at(), reason: WakeReason::Others };
+        let others = |others: &ChatterState| Wake { at: others.at(), reason: WakeReason::Chatter };
         let bytes = self.leaving.first().map(through);
-        let replies = self.held.timed.first().map(reply);
-        let others = self.others.as_ref().map(others);
-        let drives = self.agenda.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
+        let replies = self.queue.timed.first().map(reply);
+        let others = self.chatter.as_ref().map(others);
+        let drives =
+            self.deadlines.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
         let replies = bytes.into_iter().chain(replies);
         silences.chain(replies).chain(others).chain(drives).min_by_key(|wake| wake.at)
     }
@@ -342,7 +347,7 @@ impl Bus {
             self.follow_drives();
             self.readdress();
         }
-        self.agenda.set(id, self.drives[usize::from(id.0)].deadline());
+        self.deadlines.set(id, self.drives[usize::from(id.0)].deadline());
     }
 
     /// Switches all stations of `id`'s device: they share their power.

@@ -49,8 +49,8 @@ pub enum WakeReason {
     Through(LinkId),
     /// A reply that was held begins to leave on that link.
     Reply(LinkId),
-    /// Others speak on the line.
-    Others,
+    /// The other masters on the line speak.
+    Chatter,
     /// Something will happen in that drive.
     Drive(DriveId),
 }

@@ -7,16 +7,16 @@ use crate::wire::{Frame, Inline, NoiseCause};
 
 impl Bus {
     /// Tells how the port of a master is set, and whether the line understands it.
-    pub fn tell_port(&mut self, now: Instant, port: PortSettings, heard: bool) {
+    pub fn tell_port(&mut self, now: Instant, port: PortSettings, understood: bool) {
         self.advance_to(now);
-        self.emit(What::Port { port, heard });
+        self.emit(What::Port { port, understood });
     }
 
     /// Takes bytes that arrived on `link` at `now`, sent at `baud` rather than the speed of the line: no drive
     /// understands them.
     pub fn receive_unheard(&mut self, now: Instant, link: LinkId, bytes: &[u8], baud: u32) {
         self.advance_to(now);
-        if self.habits.echo {
+        if self.line_behaviour.echo {
             bytes.chunks(super::CHUNK).for_each(|bytes| self.pass(link, &Frame::from_slice(bytes)));
         }
         let (head, why) = (Inline::from_slice(bytes), NoiseCause::Speed(baud));

@@ -8,11 +8,11 @@ use std::path::PathBuf;
 #[command(version, about, propagate_version = true, max_term_width = 100)]
 pub struct Args {
     #[command(subcommand)]
-    pub command: Command,
+    pub command: CliCommand,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum CliCommand {
     /// Emulate drives
     Run(Box<RunArgs>),
     /// List the built-in models, their products and options

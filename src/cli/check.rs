@@ -2,16 +2,16 @@
 
 use super::args::CheckArgs;
 use super::output::{complain, print};
-use super::{Failure, INVALID};
+use super::{CliError, INVALID};
 use drivemu::bench::{kind_of, parse};
 use drivemu::model::check as check_model;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
 use drivemu::scenario::check as check_scenario;
-use drivemu::shell::{FileLibrary, plain, read_text};
+use drivemu::server::{FileLibrary, plain, read_text};
 use std::path::Path;
 
-pub fn check(args: &CheckArgs) -> Result<(), Failure> {
+pub fn check(args: &CheckArgs) -> Result<(), CliError> {
     let mut bad = 0;
     for file in &args.files {
         let name = file.display().to_string();
@@ -36,7 +36,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
         0 => Ok(()),
         _ => {
             let text = format!("{bad} of {} file(s) invalid", args.files.len());
-            Err(Failure { code: INVALID, text })
+            Err(CliError { code: INVALID, text })
         }
     }
 }

@@ -12,9 +12,9 @@ mod schema;
 mod show;
 mod state;
 
-use args::{Args, Command};
+use args::{Args, CliCommand};
 use clap::Parser;
-use drivemu::shell::{plain, said};
+use drivemu::server::{plain, said};
 use std::io::ErrorKind;
 use std::process::ExitCode;
 
@@ -27,12 +27,12 @@ const NO_PORT: u8 = 3;
 
 /// Why a command ends with something else than 0: the code, and what to say.
 #[derive(Debug)]
-struct Failure {
+struct CliError {
     code: u8,
     text: String,
 }
 
-impl Failure {
+impl CliError {
     fn invalid(text: impl Into<String>) -> Self {
         Self { code: INVALID, text: text.into() }
     }
@@ -45,7 +45,7 @@ pub fn main() -> ExitCode {
     };
     let code = match result {
         Ok(()) => 0,
-        Err(Failure { code, text }) => {
+        Err(CliError { code, text }) => {
             output::complain(&text);
             code
         }
@@ -54,24 +54,24 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-fn act(command: Command) -> Result<(), Failure> {
+fn act(command: CliCommand) -> Result<(), CliError> {
     match command {
-        Command::Run(args) => run::run(*args),
-        Command::Models => models::models(),
-        Command::Show(args) => show::show(&args),
-        Command::Check(args) => check::check(&args),
-        Command::Schema(args) => schema::schema(&args),
+        CliCommand::Run(args) => run::run(*args),
+        CliCommand::Models => models::models(),
+        CliCommand::Show(args) => show::show(&args),
+        CliCommand::Check(args) => check::check(&args),
+        CliCommand::Schema(args) => schema::schema(&args),
     }
 }
 
 /// What clap has to say: help and version on stdout, a mistake on stderr.
-fn usage(error: &clap::Error) -> Result<(), Failure> {
+fn usage(error: &clap::Error) -> Result<(), CliError> {
     let printed = error.print();
     match printed {
-        _ if error.use_stderr() => Err(Failure::invalid("")),
+        _ if error.use_stderr() => Err(CliError::invalid("")),
         Err(why) if why.kind() != ErrorKind::BrokenPipe => {
             let text = format!("can't write to stdout: {}", plain(&why));
-            Err(Failure { code: FAILED, text })
+            Err(CliError { code: FAILED, text })
         }
         _ => Ok(()),
     }

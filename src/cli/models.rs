@@ -1,15 +1,15 @@
 //! `drivemu models`: what is built in.
 
 use super::output::print;
-use super::{FAILED, Failure};
+use super::{CliError, FAILED};
 use drivemu::model::Choices;
 use drivemu::model::builtin::Builtin;
 
-pub fn models() -> Result<(), Failure> {
+pub fn models() -> Result<(), CliError> {
     for builtin in Builtin::all() {
         let model = builtin.load(&Choices::new()).map_err(|problems| {
             let text = format!("{} is broken: {}", builtin.file, problems[0]);
-            Failure { code: FAILED, text }
+            CliError { code: FAILED, text }
         })?;
         let default = if model.name == Builtin::default_name() { " (default)" } else { "" };
         print(&format!("{}{default}\n    {}\n", model.name, model.about))?;

@@ -1,17 +1,18 @@
 //! Words on stdout and stderr.
 
-use super::{FAILED, Failure};
-use drivemu::shell::{plain, say};
+use super::{CliError, FAILED};
+use drivemu::server::{plain, say};
 use drivemu::text::lines;
 use std::io::{ErrorKind, Write, stdout};
 
 /// Prints to stdout. A reader that went away (`| head`) is no failure.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<(), CliError> {
     let printed = stdout().write_all(lines(text).as_bytes()).and_then(|()| stdout().flush());
     match printed {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure { code: FAILED, text: format!("can't write to stdout: {}", plain(&error)) })
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError {
+            code: FAILED,
+            text: format!("can't write to stdout: {}", plain(&error)),
+        }),
         _ => Ok(()),
     }
 }

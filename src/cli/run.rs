@@ -1,20 +1,20 @@
 //! `drivemu run`: flags or a bench file become a bench, and the shell runs it.
 
 use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
-use super::state::State;
-use super::{FAILED, Failure, INVALID, NO_PORT};
+use super::state::StateArg;
+use super::{CliError, FAILED, INVALID, NO_PORT};
 use drivemu::bench::{
-    Bench, BenchLine, Device, DeviceSpec, Library, PortSpec, Saved, SpecProblem, WireSpec, Wish,
-    kind_of, match_line, parse_saved,
+    Bench, BenchLine, Device, DeviceSpec, Library, OverrideKey, PortSpec, Saved, SpecProblem,
+    WireSpec, kind_of, match_line, parse_saved,
 };
-use drivemu::fault::{Habits, Pacing};
+use drivemu::fault::{LineBehaviour, Pacing};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::problem::render::render;
 use drivemu::scenario::{self, Verdict};
 use drivemu::serial::{Mode, Parity, Settings};
-use drivemu::shell::{
-    Claims, Destination, Diagnostics, Ended, FileLibrary, Judged, LogFormat, Play, RunError,
+use drivemu::server::{
+    Destination, Diagnostics, Ended, FileLibrary, Judged, LogFormat, PathClaims, Play, RunError,
     RunOptions, Store, diagnose, is_path, plain, read_text, run as run_bench,
 };
 use drivemu::units::parse_integer;
@@ -22,21 +22,21 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub fn run(args: RunArgs) -> Result<(), Failure> {
+pub fn run(args: RunArgs) -> Result<(), CliError> {
     diagnose(if args.quiet { Diagnostics::Quiet } else { Diagnostics::Normal });
     if !(1e-3..=1e6).contains(&args.rate) {
-        return Err(Failure::invalid("--rate takes a number from 0.001 to 1000000"));
+        return Err(CliError::invalid("--rate takes a number from 0.001 to 1000000"));
     }
-    let mut claims = flags(&args).map_err(Failure::invalid)?;
-    let (store, state) = args.state.as_deref().map(State::open).transpose()?.unzip();
+    let mut bit_overrides = flags(&args).map_err(CliError::invalid)?;
+    let (store, state) = args.state.as_deref().map(StateArg::open).transpose()?.unzip();
     let mut state = state.unwrap_or_default();
     let (mut bench, base, models) = bench(&args, &mut state.saved)?;
-    lines(&bench, &base, &models, &mut claims).map_err(Failure::invalid)?;
+    lines(&bench, &base, &models, &mut bit_overrides).map_err(CliError::invalid)?;
     state.finish()?;
     for spec in &args.fault {
         for line in &mut bench.lines {
             let added = line.add_fault(spec);
-            added.map_err(|problems| Failure::invalid(render(&problems, "--fault", spec)))?;
+            added.map_err(|problems| CliError::invalid(render(&problems, "--fault", spec)))?;
         }
     }
     let play = args.scenario.as_deref().map(|file| play(file, &args, &bench)).transpose()?;
@@ -55,21 +55,21 @@ pub fn run(args: RunArgs) -> Result<(), Failure> {
         base,
     };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
+    let runtime = runtime.map_err(|error| CliError { code: FAILED, text: error.to_string() })?;
     let Ended { judged, errors } = runtime.block_on(run_bench(bench, options));
     let is_port = |error: &RunError| matches!(error, RunError::Port(_));
     let code = if errors.iter().any(is_port) { NO_PORT } else { FAILED };
     let told = errors.iter().map(RunError::to_string).chain(failures(&judged));
     match told.collect::<Vec<_>>().as_slice() {
         [] => Ok(()),
-        told => Err(Failure { code, text: told.join("\n") }),
+        told => Err(CliError { code, text: told.join("\n") }),
     }
 }
 
 /// Where an output goes that a flag asks for.
-fn destination(path: Option<&Path>) -> Result<Option<Destination>, Failure> {
+fn destination(path: Option<&Path>) -> Result<Option<Destination>, CliError> {
     let find = |path: &Path| {
-        Destination::find(path).map_err(|error| Failure {
+        Destination::find(path).map_err(|error| CliError {
             code: FAILED,
             text: format!("can't write {}: {}", path.display(), plain(&error)),
         })
@@ -78,18 +78,18 @@ fn destination(path: Option<&Path>) -> Result<Option<Destination>, Failure> {
 }
 
 /// The files that the flags name: none may be written that is read, and none twice.
-fn flags(args: &RunArgs) -> Result<Claims, String> {
-    let mut claims = Claims::new();
+fn flags(args: &RunArgs) -> Result<PathClaims, String> {
+    let mut bit_overrides = PathClaims::new();
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     if is_path(target) {
-        claims.reads(target, Path::new(target))?;
+        bit_overrides.reads(target, Path::new(target))?;
     }
     let named = |flag: &str, path: &Path| format!("{flag} {}", path.display());
     if let Some(path) = &args.scenario {
-        claims.reads(named("--scenario", path), path)?;
+        bit_overrides.reads(named("--scenario", path), path)?;
     }
     if let Some(path) = &args.state {
-        claims.owns(named("--state", path), path, Some(&Store::beside(path)))?;
+        bit_overrides.owns(named("--state", path), path, Some(&Store::beside(path)))?;
     }
     let outputs = [
         ("--log-file", &args.log_file),
@@ -98,10 +98,10 @@ fn flags(args: &RunArgs) -> Result<Claims, String> {
     ];
     for (flag, path) in outputs {
         if let Some(path) = path {
-            claims.writes(named(flag, path), path)?;
+            bit_overrides.writes(named(flag, path), path)?;
         }
     }
-    Ok(claims)
+    Ok(bit_overrides)
 }
 
 /// The files that a bench names.
@@ -109,16 +109,20 @@ fn lines(
     bench: &Bench,
     base: &Path,
     models: &[PathBuf],
-    claims: &mut Claims,
+    bit_overrides: &mut PathClaims,
 ) -> Result<(), String> {
     for model in models {
-        claims.reads(format!("the model {}", model.display()), model)?;
+        bit_overrides.reads(format!("the model {}", model.display()), model)?;
     }
     for line in &bench.lines {
         let name = |what: &str, path: &str| format!("the {what} {path} of line `{}`", line.name);
         match &line.port {
-            PortSpec::Pty(Some(link)) => claims.links(name("link", link), &base.join(link))?,
-            PortSpec::Serial(path) => claims.owns(name("port", path), Path::new(path), None)?,
+            PortSpec::Pty(Some(link)) => {
+                bit_overrides.links(name("link", link), &base.join(link))?
+            }
+            PortSpec::Serial(path) => {
+                bit_overrides.owns(name("port", path), Path::new(path), None)?
+            }
             PortSpec::Pty(None) | PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => {}
         }
     }
@@ -126,12 +130,12 @@ fn lines(
 }
 
 /// The scenario in `file`, for the lines of `bench`.
-fn play(file: &Path, args: &RunArgs, bench: &Bench) -> Result<Play, Failure> {
+fn play(file: &Path, args: &RunArgs, bench: &Bench) -> Result<Play, CliError> {
     let name = file.display().to_string();
     let text = read_text(file)
-        .map_err(|error| Failure::invalid(format!("can't read {name}: {}", plain(&error))))?;
+        .map_err(|error| CliError::invalid(format!("can't read {name}: {}", plain(&error))))?;
     let scenario = scenario::parse(&text, &bench.lines)
-        .map_err(|problems| Failure::invalid(render(&problems, &name, &text)))?;
+        .map_err(|problems| CliError::invalid(render(&problems, &name, &text)))?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Play { name, scenario, junit: destination(args.junit.as_deref())? })
 }
@@ -155,35 +159,35 @@ fn draw_seed() -> u64 {
 }
 
 /// The bench to run, what its paths are relative to, and the files of its models.
-fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf, Vec<PathBuf>), Failure> {
+fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf, Vec<PathBuf>), CliError> {
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     refuse_swallowed_model(args)?;
-    let (file, text) = FileLibrary::new("").fetch(target).map_err(Failure::invalid)?;
+    let (file, text) = FileLibrary::new("").fetch(target).map_err(CliError::invalid)?;
     if kind_of(&text) == "scenario" {
         let text = format!("{file} is a scenario; write `run MODEL --scenario {file}`");
-        return Err(Failure::invalid(text));
+        return Err(CliError::invalid(text));
     }
     if kind_of(&text) == "bench" {
         refuse_flags_of_a_line(args)?;
         let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();
         let library = FileLibrary::new(&base);
         let bench = parse_saved(&text, &library, saved);
-        let bench = bench.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+        let bench = bench.map_err(|problems| CliError::invalid(render(&problems, &file, &text)))?;
         return Ok((bench, base, library.files()));
     }
     let compile = |choices: &Choices| {
         let model = load(&text, choices);
-        model.map_err(|problems| Failure::invalid(render(&problems, &file, &text)))
+        model.map_err(|problems| CliError::invalid(render(&problems, &file, &text)))
     };
     let plain = compile(&Choices::new())?;
-    let (choices, set) = wishes(args, &plain)?;
+    let (choices, set) = override_keys(args, &plain)?;
     let model = if choices.is_empty() { plain } else { compile(&choices)? };
     let line = line(args, Arc::new(model), set, saved)?;
     Ok((Bench { seed: None, lines: vec![line] }, PathBuf::new(), Vec::new()))
 }
 
 /// `--pty MODEL` and `--tcp MODEL` take the model for a link or an address.
-fn refuse_swallowed_model(args: &RunArgs) -> Result<(), Failure> {
+fn refuse_swallowed_model(args: &RunArgs) -> Result<(), CliError> {
     let link = args.pty.iter().flatten().filter_map(|link| link.to_str());
     let given =
         link.map(|link| ("--pty", link)).chain(args.tcp.iter().map(|it| ("--tcp", it.as_str())));
@@ -191,14 +195,14 @@ fn refuse_swallowed_model(args: &RunArgs) -> Result<(), Failure> {
         if args.target.is_none() && Builtin::find(name).is_some() {
             let text =
                 format!("`{flag} {name}` does not run the model {name}; write `run {name} {flag}`");
-            return Err(Failure::invalid(text));
+            return Err(CliError::invalid(text));
         }
     }
     Ok(())
 }
 
 /// A bench file says these things itself.
-fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
+fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), CliError> {
     let flags = [
         ("--unit", args.unit.is_some()),
         ("--switches", args.switches.is_some()),
@@ -218,37 +222,42 @@ fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), Failure> {
     match flags.iter().find(|(_, given)| *given) {
         Some((flag, _)) => {
             let text = format!("{flag} goes with a model; a bench file says such things itself");
-            Err(Failure::invalid(text))
+            Err(CliError::invalid(text))
         }
         None => Ok(()),
     }
 }
 
 /// `--set` speaks of options and of registers: sorts them out.
-fn wishes(args: &RunArgs, model: &Model) -> Result<(Choices, BTreeMap<String, i64>), Failure> {
+fn override_keys(
+    args: &RunArgs,
+    model: &Model,
+) -> Result<(Choices, BTreeMap<String, i64>), CliError> {
     let (mut choices, mut set) = (Choices::new(), BTreeMap::new());
-    for wish in &args.set {
-        let Some((key, value)) = wish.split_once('=') else {
-            return Err(Failure::invalid(format!("--set {wish}: write KEY=VALUE")));
+    for override_key in &args.set {
+        let Some((key, value)) = override_key.split_once('=') else {
+            return Err(CliError::invalid(format!("--set {override_key}: write KEY=VALUE")));
         };
         if let Some(option) = model.options.iter().find(|option| option.name == key) {
             if !option.choices.iter().any(|choice| choice == value) {
                 let all = option.choices.join(", ");
-                return Err(Failure::invalid(format!("--set {wish}: {key} takes {all}")));
+                return Err(CliError::invalid(format!("--set {override_key}: {key} takes {all}")));
             }
             if choices.insert(key.into(), value.into()).is_some() {
-                return Err(Failure::invalid(format!("--set {wish}: {key} is chosen twice")));
+                return Err(CliError::invalid(format!(
+                    "--set {override_key}: {key} is chosen twice"
+                )));
             }
             continue;
         }
         let number = parse_integer(value).ok_or_else(|| {
             let text = format!(
-                "--set {wish}: `{value}` is not a whole number, and {key} is not an option"
+                "--set {override_key}: `{value}` is not a whole number, and {key} is not an option"
             );
-            Failure::invalid(text)
+            CliError::invalid(text)
         })?;
         if set.insert(key.into(), number).is_some() {
-            return Err(Failure::invalid(format!("--set {wish}: {key} is set twice")));
+            return Err(CliError::invalid(format!("--set {override_key}: {key} is set twice")));
         }
     }
     Ok((choices, set))
@@ -259,15 +268,15 @@ fn line(
     model: Arc<Model>,
     set: BTreeMap<String, i64>,
     saved: &mut Saved,
-) -> Result<BenchLine, Failure> {
+) -> Result<BenchLine, CliError> {
     let spec =
         DeviceSpec { unit: args.unit, switches: args.switches, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {
         let sentence = |it: &SpecProblem| match &it.advice {
-            Some(advice) => format!("{}: {} ({advice})\n", flag(&it.wish, &spec), it.what),
-            None => format!("{}: {}\n", flag(&it.wish, &spec), it.what),
+            Some(advice) => format!("{}: {} ({advice})\n", flag(&it.override_key, &spec), it.what),
+            None => format!("{}: {}\n", flag(&it.override_key, &spec), it.what),
         };
-        Failure::invalid(problems.iter().map(sentence).collect::<String>())
+        CliError::invalid(problems.iter().map(sentence).collect::<String>())
     })?;
     let name = "line";
     saved.give(name, 0, &mut device);
@@ -278,36 +287,36 @@ fn line(
     let wire = WireSpec { mode, match_baud: args.match_baud, ..own };
     if args.match_baud && !matches!(port, PortSpec::Pty(_)) {
         let text = "--match-baud: only a pseudo-terminal carries bytes at the wrong speed";
-        return Err(Failure::invalid(text));
+        return Err(CliError::invalid(text));
     }
     if !matches!(port, PortSpec::Tcp(_)) {
         let told = args.ascii || mode != own.mode;
-        match_line(&mut device, wire.mode, told).map_err(Failure::invalid)?;
+        match_line(&mut device, wire.mode, told).map_err(CliError::invalid)?;
     } else if args.ascii || mode != own.mode {
-        return Err(Failure { code: INVALID, text: "Modbus TCP has no serial settings".into() });
+        return Err(CliError { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     } else if args.pacing == PacingArg::Line {
         let text = "--pacing line: Modbus TCP has no characters that take time";
-        return Err(Failure::invalid(text));
+        return Err(CliError::invalid(text));
     }
     let pacing = match args.pacing {
         PacingArg::Ideal => Pacing::Ideal,
         PacingArg::Line => port.pacing(),
     };
-    let habits = Habits { pacing, ..Habits::default() };
+    let line_behaviour = LineBehaviour { pacing, ..LineBehaviour::default() };
     let (name, devices, faults) = (name.into(), vec![device], Vec::new());
-    Ok(BenchLine { name, port, wire, devices, faults, habits })
+    Ok(BenchLine { name, port, wire, devices, faults, line_behaviour })
 }
 
 /// What on the command line asked for it.
-fn flag(wish: &Wish, spec: &DeviceSpec) -> String {
-    match wish {
-        Wish::Set(name) | Wish::SetName(name) => match spec.set.get(name) {
+fn flag(override_key: &OverrideKey, spec: &DeviceSpec) -> String {
+    match override_key {
+        OverrideKey::Set(name) | OverrideKey::SetName(name) => match spec.set.get(name) {
             Some(value) => format!("--set {name}={value}"),
             None => format!("--set {name}"),
         },
-        Wish::Unit => "--unit".into(),
+        OverrideKey::Unit => "--unit".into(),
         // These have no flags.
-        Wish::Switches | Wish::Terminal(_) => "the drive".into(),
+        OverrideKey::Switches | OverrideKey::Terminal(_) => "the drive".into(),
     }
 }
 

@@ -2,15 +2,15 @@
 
 use super::args::{SchemaArgs, SchemaFormat};
 use super::output::print;
-use super::{FAILED, Failure};
+use super::{CliError, FAILED};
 
-pub fn schema(args: &SchemaArgs) -> Result<(), Failure> {
+pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
     let schema = match args.format {
         SchemaFormat::Model => drivemu::model::raw::schema(),
         SchemaFormat::Scenario => drivemu::scenario::raw::schema(),
         SchemaFormat::Bench => drivemu::bench::raw::schema(),
     };
     let text = serde_json::to_string_pretty(&schema);
-    let text = text.map_err(|error| Failure { code: FAILED, text: error.to_string() })?;
+    let text = text.map_err(|error| CliError { code: FAILED, text: error.to_string() })?;
     print(&format!("{text}\n"))
 }

@@ -1,22 +1,22 @@
 //! `drivemu show`: the register map, or one row of it.
 
-use super::Failure;
+use super::CliError;
 use super::args::{ShowArgs, TableFormat};
 use super::output::print;
 use drivemu::bench::Library;
 use drivemu::model::{
-    Access, Applies, Choices, Counts, Kind, Model, Number, Reaction, Row, RowId, Shows, WordOrder,
-    load,
+    Access, Applies, Choices, Counts, Model, Number, Reaction, Row, RowId, RowKind, Shows,
+    WordOrder, load,
 };
 use drivemu::problem::render::render;
-use drivemu::shell::FileLibrary;
-use drivemu::words::Word;
+use drivemu::server::FileLibrary;
+use drivemu::vocabulary::Named;
 use serde_json::{Value, json};
 
-pub fn show(args: &ShowArgs) -> Result<(), Failure> {
-    let (file, text) = FileLibrary::new("").fetch(&args.model).map_err(Failure::invalid)?;
+pub fn show(args: &ShowArgs) -> Result<(), CliError> {
+    let (file, text) = FileLibrary::new("").fetch(&args.model).map_err(CliError::invalid)?;
     let model = load(&text, &Choices::new())
-        .map_err(|problems| Failure::invalid(render(&problems, &file, &text)))?;
+        .map_err(|problems| CliError::invalid(render(&problems, &file, &text)))?;
     let rows: Vec<RowId> = match &args.row {
         Some(name) => vec![find(&model, name)?],
         None => model.map.rows().map(|(id, _)| id).collect(),
@@ -32,12 +32,12 @@ pub fn show(args: &ShowArgs) -> Result<(), Failure> {
     }
 }
 
-fn find(model: &Model, name: &str) -> Result<RowId, Failure> {
+fn find(model: &Model, name: &str) -> Result<RowId, CliError> {
     model.map.find(name).ok_or_else(|| {
         let ids = model.map.rows().map(|(_, row)| row.id.as_str());
         let advice = drivemu::problem::suggest::did_you_mean(name, ids);
         let advice = advice.map(|it| format!(" ({it})")).unwrap_or_default();
-        Failure::invalid(format!("{} has no row `{name}`{advice}", model.name))
+        CliError::invalid(format!("{} has no row `{name}`{advice}", model.name))
     })
 }
 
@@ -239,7 +239,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Reaction::InputWord(word) => format!("input word {}", word + 1),
         Reaction::Command(index) => {
             let actions = &model.wiring.commands[usize::from(index)].actions;
-            let action = |(value, action): &(i64, drivemu::words::Action)| {
+            let action = |(value, action): &(i64, drivemu::vocabulary::Action)| {
                 format!("{value} {}", action.name())
             };
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
@@ -292,12 +292,12 @@ fn whole(model: &Model, id: RowId) -> impl Iterator<Item = &'static str> {
     whole.into_iter().filter(|it| it.1).map(|it| it.0)
 }
 
-fn kind(kind: Kind) -> &'static str {
+fn kind(kind: RowKind) -> &'static str {
     match kind {
-        Kind::U16 => "u16",
-        Kind::I16 => "i16",
-        Kind::U32 => "u32",
-        Kind::I32 => "i32",
+        RowKind::U16 => "u16",
+        RowKind::I16 => "i16",
+        RowKind::U32 => "u32",
+        RowKind::I32 => "i32",
     }
 }
 
@@ -334,7 +334,7 @@ fn kept(model: &Model, row: &Row) -> String {
     };
     let commands = model.wiring.commands.iter().flat_map(|it| &it.actions);
     let stores =
-        commands.map(|(_, action)| *action).any(|it| it == drivemu::words::Action::StoreAll);
+        commands.map(|(_, action)| *action).any(|it| it == drivemu::vocabulary::Action::StoreAll);
     let window = model.map.windows().iter().find(keeps);
     match (row.access, row.volatile, window) {
         (Access::Read, ..) => String::new(),

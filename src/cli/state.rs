@@ -1,27 +1,27 @@
 //! `--state`: what an earlier run has left, and what to say if that is not for this one.
 
-use super::Failure;
+use super::CliError;
 use drivemu::bench::Saved;
 use drivemu::problem::Problem;
 use drivemu::problem::render::render;
-use drivemu::shell::{Store, plain};
+use drivemu::server::{Store, plain};
 use std::path::Path;
 
 /// A state file as it was found. Without one it is that of a first run.
 #[derive(Debug, Default)]
-pub struct State {
+pub struct StateArg {
     /// What is in it.
     pub saved: Saved,
     file: String,
     text: String,
 }
 
-impl State {
+impl StateArg {
     /// Takes the file at `path` for this run.
-    pub fn open(path: &Path) -> Result<(Store, Self), Failure> {
+    pub fn open(path: &Path) -> Result<(Store, Self), CliError> {
         let file = path.display().to_string();
         let (store, text) = Store::open(path)
-            .map_err(|error| Failure::invalid(format!("can't use {file}: {}", plain(&error))))?;
+            .map_err(|error| CliError::invalid(format!("can't use {file}: {}", plain(&error))))?;
         let mut state = Self { file, ..Self::default() };
         if let Some(text) = text {
             state.text = text;
@@ -31,15 +31,15 @@ impl State {
     }
 
     /// Makes sure that everything in it has found its drive.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), CliError> {
         let saved = std::mem::take(&mut self.saved);
         saved.finish().map_err(|problems| self.refused(&problems))
     }
 
-    fn refused(&self, problems: &[Problem]) -> Failure {
+    fn refused(&self, problems: &[Problem]) -> CliError {
         let Self { file, text, .. } = self;
         let told = render(problems, file, text);
         let advice = format!("{file} is as it was: mend it, move it away, or give another --state");
-        Failure::invalid(format!("{told}{advice}"))
+        CliError::invalid(format!("{told}{advice}"))
     }
 }

@@ -5,7 +5,7 @@ use super::Drive;
 use crate::behaviour::Trip;
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::AlarmStop;
-use crate::words::{AlarmCause, HomeEnd};
+use crate::vocabulary::{AlarmCause, HomeEnd};
 
 impl Drive {
     /// Trips with `cause`, if the model has an alarm for it. Returns whether it has.

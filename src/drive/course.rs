@@ -1,4 +1,4 @@
-//! What the motion under way goes by, and how it follows when that changes.
+//! What the motion under origin goes by, and how it follows when that changes.
 
 use super::Drive;
 use super::gear::Ratio;
@@ -6,7 +6,7 @@ use super::levels::Level;
 use super::settings::Moment;
 use crate::behaviour::{Phase, Ramp, Slope};
 use crate::model::{Finish, SettingRow};
-use crate::words::{Input, Setting};
+use crate::vocabulary::{Input, Setting};
 
 /// What a motion goes by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub(super) enum Course {
     /// What a level asks for.
     Level(Level),
     /// Settings of a move.
-    Move { rows: MoveRows, way: Way },
+    Move { rows: MoveRows, origin: MoveOrigin },
     /// The settings of a homing, with what happens at its end and by what its time limit is multiplied.
     Home { finish: Finish, factor: i64 },
     /// The stop after an alarm.
@@ -27,7 +27,7 @@ pub(super) enum Course {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MoveRows {
     /// Those of moves.
-    Axis,
+    AxisWiring,
     /// Those of the position segment of this number.
     Segment(u16),
     /// Those of interrupt positioning.
@@ -39,24 +39,24 @@ impl MoveRows {
     pub(super) fn segment(self) -> Option<u16> {
         match self {
             Self::Segment(number) => Some(number),
-            Self::Axis | Self::Interrupt => None,
+            Self::AxisWiring | Self::Interrupt => None,
         }
     }
 }
 
 /// Where the target of a move counts from, as it was when the move was ordered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Way {
+pub(super) struct MoveOrigin {
     /// In units of position.
     pub(super) from: i64,
     /// Where the position register says 0, in counts of the machine.
     pub(super) zero: i64,
     pub(super) gear: Ratio,
-    /// Does it go the other way?
+    /// Does it go the other origin?
     pub(super) reverse: bool,
 }
 
-impl Way {
+impl MoveOrigin {
     /// Where a move ends, in counts of the machine, that goes `by` units of position.
     pub(super) fn target(&self, by: i64) -> i64 {
         let by = if self.reverse { by.saturating_neg() } else { by };
@@ -65,7 +65,7 @@ impl Way {
 }
 
 impl Drive {
-    /// Has the motion under way go by what its settings say now.
+    /// Has the motion under origin go by what its settings say now.
     pub(super) fn follow_settings(&mut self) {
         if !self.motor.is_moving() {
             self.course = None;
@@ -76,9 +76,9 @@ impl Drive {
                 let ramp = self.run_by_order(Moment::UnderWay);
                 self.motor.retune_run(self.now, ramp);
             }
-            Some(Course::Move { rows, way }) => {
+            Some(Course::Move { rows, origin }) => {
                 let (by, ramp) = self.settings(self.move_rows(rows), Moment::UnderWay).next_move();
-                self.motor.retune_move(self.now, way.target(by), ramp);
+                self.motor.retune_move(self.now, origin.target(by), ramp);
             }
             Some(Course::Home { .. }) => self.follow_home_settings(),
             // What a level asks for is followed with the levels.
@@ -95,7 +95,7 @@ impl Drive {
         }
     }
 
-    /// How the motion under way slows down: as a stop that begins now would, or the one that has begun does.
+    /// How the motion under origin slows down: as a stop that begins now would, or the one that has begun does.
     pub(super) fn decel(&self) -> Option<Slope> {
         let moment = match self.motor.phase() {
             Phase::Stopping => Moment::UnderWay,
@@ -119,7 +119,7 @@ impl Drive {
         let axis = &self.model.wiring.axis;
         let segments = axis.segments.position.as_ref();
         let settings = match rows {
-            MoveRows::Axis => Some(&axis.settings),
+            MoveRows::AxisWiring => Some(&axis.settings),
             MoveRows::Segment(number) => {
                 segments.and_then(|it| it.get(number)).map(|it| &it.settings)
             }

@@ -3,12 +3,12 @@
 use super::Drive;
 use super::course::Course;
 use super::settings::Moment;
-use crate::behaviour::{HomeOrder, Slope, Stage};
+use crate::behaviour::{HomeOrder, MotionReport, Slope};
 use crate::event::{Change, Ignored, Ordered};
-use crate::model::{Choice, Finish, Homing};
+use crate::model::{Choice, Finish, HomingRules};
 use crate::motion::Index;
 use crate::time::Duration;
-use crate::words::{
+use crate::vocabulary::{
     Action, AlarmCause, HomeEnd, HomeStarter, Input, OriginPosition, RowId, Setting,
 };
 
@@ -19,7 +19,7 @@ impl Drive {
     /// Looks for the origin because `starter` says so.
     ///
     /// # Errors
-    /// Why it does not: a row wants another starter, a row holds a number that stands for nothing, or the axis can't.
+    /// Why it does not: a row wants another starter, a row word_watchdogs a number that stands for nothing, or the axis can't.
     pub(super) fn home(&mut self, starter: HomeStarter) -> Result<(), Ignored> {
         let model = self.model.clone();
         let Some(homing) = &model.wiring.homing else { return Err(Ignored::NoMeaning) };
@@ -74,17 +74,17 @@ impl Drive {
             (_, Err(why)) => self.ignore(Ordered::Action(Action::HomeStart), why),
             (_, Ok(())) => {}
         }
-        self.settle();
+        self.update_axis();
     }
 
     /// Does what `stage` asks of the drive. Has that changed what is wanted of the axis?
-    pub(super) fn follow_stage(&mut self, stage: Stage) -> bool {
+    pub(super) fn follow_stage(&mut self, stage: MotionReport) -> bool {
         match stage {
-            Stage::Homed(origin) => {
+            MotionReport::Homed(origin) => {
                 self.finish_home(origin);
                 true
             }
-            Stage::Lost { why, forward, alarm } => {
+            MotionReport::Lost { why, forward, alarm } => {
                 self.home_is_over();
                 alarm
                     && self.trip(match (why, forward) {
@@ -93,12 +93,12 @@ impl Drive {
                         (_, false) => AlarmCause::HomingLimitNeg,
                     })
             }
-            Stage::Deviates => self.trip(AlarmCause::PositionDeviation),
-            Stage::Stops | Stage::Limit { .. } => {
+            MotionReport::Deviates => self.trip(AlarmCause::PositionDeviation),
+            MotionReport::Stops | MotionReport::Limit { .. } => {
                 self.take_settings(Moment::Stop);
                 false
             }
-            Stage::Replans(_) | Stage::Pauses | Stage::Resumes(_) => {
+            MotionReport::Replans(_) | MotionReport::Pauses | MotionReport::Resumes(_) => {
                 self.look_at_places();
                 false
             }
@@ -147,7 +147,7 @@ impl Drive {
 
     fn home_order(
         &self,
-        homing: &Homing,
+        homing: &HomingRules,
         number: i64,
         finish: Finish,
         factor: i64,
@@ -157,9 +157,9 @@ impl Drive {
             fast: 0.0,
             slow: 0.0,
             accel: Slope::Rate(0.0),
-            limit: self.or(&homing.limit, Homing::LIMIT)?,
-            source: self.or(&homing.source, Homing::SOURCE)?,
-            index: self.or(&homing.index, Homing::INDEX)?,
+            limit: self.or(&homing.limit, HomingRules::LIMIT)?,
+            source: self.or(&homing.source, HomingRules::SOURCE)?,
+            index: self.or(&homing.index, HomingRules::INDEX)?,
             marks: Index { every: self.counts_asked_for() as i64, offset: 0 },
             stop: homing.stop,
             way: 0,
@@ -191,7 +191,7 @@ impl Drive {
     }
 
     /// What the time limit is multiplied by.
-    fn home_time_factor(&self, homing: &Homing) -> i64 {
+    fn home_time_factor(&self, homing: &HomingRules) -> i64 {
         let factor = homing.time_factor.map(|it| it.of(self.bank.value(&self.model, it.row)));
         factor.filter(|it| *it > 0).unwrap_or(1)
     }
@@ -208,7 +208,7 @@ impl Drive {
         starter.decode(self.bank.value(&self.model, starter.row))
     }
 
-    fn finish(&self, homing: &Homing) -> Option<Finish> {
+    fn finish(&self, homing: &HomingRules) -> Option<Finish> {
         self.or(&homing.finish, FINISH)
     }
 

@@ -5,18 +5,18 @@ use super::course::MoveRows;
 use crate::behaviour::Phase;
 use crate::event::Ignored;
 use crate::time::{Duration, Instant};
-use crate::words::{Input, InterruptRule, Threshold};
+use crate::vocabulary::{Input, InterruptRule, Threshold};
 
 /// What has become of the last interrupt positioning.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Interrupt {
-    stage: Stage,
+    stage: InterruptState,
     /// No other starts until it is unlocked.
     locked: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Stage {
+enum InterruptState {
     /// There was none, or it was broken off, or it is long over.
     #[default]
     None,
@@ -38,7 +38,7 @@ impl Drive {
         self.settle_interrupt();
         self.may_interrupt()?;
         self.go_to(MoveRows::Interrupt, false, true)?;
-        self.interrupt.stage = Stage::Active;
+        self.interrupt.stage = InterruptState::Active;
         Ok(())
     }
 
@@ -58,7 +58,7 @@ impl Drive {
         }
         match () {
             () if self.inputs.has(Input::InterruptInhibit) => Err(Ignored::Inhibited),
-            () if self.interrupt.stage == Stage::Active => Err(Ignored::Moving),
+            () if self.interrupt.stage == InterruptState::Active => Err(Ignored::Moving),
             () if self.motor.is_homing() => Err(Ignored::Homing),
             () => self.motor.may_move(true),
         }
@@ -67,15 +67,15 @@ impl Drive {
     /// Sees whether the one under way has come to its end, or was broken off, and whether it is unlocked.
     pub(super) fn settle_interrupt(&mut self) {
         let arrived = self.motor.has_arrived();
-        if self.interrupt.stage == Stage::Active {
+        if self.interrupt.stage == InterruptState::Active {
             let done = self.in_position_at().filter(|at| *at <= self.now);
             let broken = self.motor.phase() != Phase::Moving && !arrived;
             self.interrupt.stage = match done {
-                Some(at) => Stage::Done { at },
-                None if broken => Stage::None,
-                None => Stage::Active,
+                Some(at) => InterruptState::Done { at },
+                None if broken => InterruptState::None,
+                None => InterruptState::Active,
             };
-            if self.interrupt.stage != Stage::Active {
+            if self.interrupt.stage != InterruptState::Active {
                 self.lock_interrupt();
             }
         }
@@ -84,12 +84,12 @@ impl Drive {
 
     /// Is there something to unlock: one that has run, or one under way?
     pub(super) fn can_unlock_interrupt(&self) -> bool {
-        self.interrupt.locked || self.interrupt.stage == Stage::Active
+        self.interrupt.locked || self.interrupt.stage == InterruptState::Active
     }
 
     /// Another motion takes its place.
     pub(super) fn replace_interrupt(&mut self) {
-        if std::mem::take(&mut self.interrupt.stage) == Stage::Active {
+        if std::mem::take(&mut self.interrupt.stage) == InterruptState::Active {
             self.lock_interrupt();
         }
     }
@@ -107,7 +107,7 @@ impl Drive {
     /// Is one under way, and has one just come to its end?
     pub(super) fn interrupt_shows(&self) -> (bool, bool) {
         match (self.interrupt.stage, self.interrupt_done_at()) {
-            (Stage::Active, at) if at.is_none_or(|at| at > self.now) => (true, false),
+            (InterruptState::Active, at) if at.is_none_or(|at| at > self.now) => (true, false),
             (_, Some(at)) => (false, at <= self.now && self.now < at + self.interrupt_done_time()),
             (_, None) => (false, false),
         }
@@ -120,9 +120,9 @@ impl Drive {
 
     fn interrupt_done_at(&self) -> Option<Instant> {
         match self.interrupt.stage {
-            Stage::None => None,
-            Stage::Active => self.in_position_at(),
-            Stage::Done { at } => Some(at),
+            InterruptState::None => None,
+            InterruptState::Active => self.in_position_at(),
+            InterruptState::Done { at } => Some(at),
         }
     }
 

@@ -4,7 +4,7 @@ use super::Drive;
 use super::course::Course;
 use super::settings::Moment;
 use crate::behaviour::{Jog, Ramp};
-use crate::words::{Input, Lasts, Setting};
+use crate::vocabulary::{Input, Lasts, Setting};
 
 /// What a level asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

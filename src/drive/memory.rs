@@ -1,22 +1,22 @@
 //! What a drive puts into its memory: counted, and said to whoever keeps it.
 
 use super::Drive;
-use crate::bank::{Haste, Kept, OFTEN, SOON, WritePlan, is_worn};
+use crate::bank::{Kept, OFTEN, SOON, WritePlan, WriteRate, is_worn};
 use crate::event::Change;
-use crate::words::RowId;
+use crate::vocabulary::RowId;
 
 /// What has become of the memory since power-on.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     /// Something was stored that nobody has asked about yet.
     fresh: bool,
-    haste: Haste,
+    write_rate: WriteRate,
 }
 
 impl Memory {
     /// Power came on.
     pub(super) fn power_on(&mut self) {
-        self.haste = Haste::default();
+        self.write_rate = WriteRate::default();
     }
 
     /// The drive itself has stored something, which wears nothing out that anybody counts.
@@ -54,7 +54,7 @@ impl Drive {
         if is_worn(writes) {
             self.changes.push_back(Change::Wear { row, writes, within: None });
         }
-        if self.memory.haste.stored(row, self.now) {
+        if self.memory.write_rate.stored(row, self.now) {
             self.changes.push_back(Change::Wear { row, writes: OFTEN, within: Some(SOON) });
         }
     }

@@ -7,14 +7,15 @@
 
 mod alarms;
 mod course;
-mod foresee;
+mod device_faults;
 mod gear;
-mod given;
 mod home;
 mod interrupt;
+mod issued;
 mod levels;
 mod memory;
 mod motion;
+mod next_time;
 mod no_effect;
 mod not_simulated;
 mod react;
@@ -23,22 +24,22 @@ mod settings;
 mod setup;
 mod show;
 mod signals;
-mod troubles;
 mod windows;
 
-pub use given::Given;
+pub use issued::IssuedCommand;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, Hold, Motor, Servo, Wants};
+use crate::behaviour::{Chain, Motor, Servo, Wants, Watchdog};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
 use crate::time::Instant;
+use crate::vocabulary::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
 use crate::wire::function::READ;
 use crate::wire::{Malformed, Request, Response, Span, Words};
-use crate::words::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
 use course::Course;
+use device_faults::DeviceFaults;
 use interrupt::Interrupt;
 use levels::Velocity;
 use memory::Memory;
@@ -47,7 +48,6 @@ use settings::Moment;
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use troubles::Troubles;
 
 /// One station of a drive.
 #[derive(Debug)]
@@ -61,12 +61,12 @@ pub struct Drive {
     memory: Memory,
     /// Has it supply?
     powered: bool,
-    troubles: Troubles,
+    device_faults: DeviceFaults,
     servo: Servo,
     /// Watchdogs of the input words.
-    holds: Vec<Hold>,
+    word_watchdogs: Vec<Watchdog>,
     /// Watchdog of the master: how long it may be silent.
-    silence: Hold,
+    silence: Watchdog,
     /// Signals on the input terminals, bit by bit.
     terminals: u16,
     inputs: Inputs,
@@ -108,7 +108,7 @@ pub struct Drive {
     /// A master has asked for a restart of the whole device, which only the bus knows.
     restart: bool,
     /// What the request under way has ordered.
-    given: Option<Given>,
+    issued: Option<IssuedCommand>,
     read: [u16; 125],
 }
 
@@ -121,8 +121,8 @@ impl Drive {
         let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
         let mut drive = Self {
             servo: Servo::power_on(now, Default::default(), false),
-            holds: vec![Hold::default(); words],
-            silence: Hold::default(),
+            word_watchdogs: vec![Watchdog::default(); words],
+            silence: Watchdog::default(),
             motor: Motor::standing(
                 now,
                 setup.start as f64,
@@ -150,7 +150,7 @@ impl Drive {
             bank,
             memory: Memory::default(),
             powered: true,
-            troubles: Troubles::default(),
+            device_faults: DeviceFaults::default(),
             terminals: setup.terminals,
             inputs: Inputs::default(),
             switches: setup.switches,
@@ -160,7 +160,7 @@ impl Drive {
             told_not_simulated: 0,
             changes: VecDeque::with_capacity(8),
             restart: false,
-            given: None,
+            issued: None,
             read: [0; 125],
         };
         drive.power_on(now);
@@ -197,7 +197,7 @@ impl Drive {
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
         self.advance_to(now);
         self.hear();
-        self.given = None;
+        self.issued = None;
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
             return Err(self.refuse(Cause::Function, Detail::Function(*function)));
         }
@@ -221,7 +221,7 @@ impl Drive {
     pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
         self.advance_to(now);
         let tripped = self.trip_by(cause, Some(Ordered::Raise(cause)));
-        self.settle();
+        self.update_axis();
         self.explain();
         tripped
     }
@@ -260,7 +260,7 @@ impl Drive {
         }
         self.changes.push_back(Change::PoweredOff);
         self.end_servo();
-        self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
+        self.word_watchdogs.iter_mut().chain([&mut self.silence]).for_each(Watchdog::stop);
         self.chain.end();
         self.motor.follow(now, Wants::default());
         self.tell_stages(None);
@@ -277,8 +277,8 @@ impl Drive {
     }
 
     /// The order that the last request gave, if it gave one that does something each time.
-    pub fn given(&self) -> Option<Given> {
-        self.given
+    pub fn issued(&self) -> Option<IssuedCommand> {
+        self.issued
     }
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
@@ -297,7 +297,7 @@ impl Drive {
             self.tell_stages(None);
             self.expire_words();
             self.end_silence();
-            self.settle();
+            self.update_axis();
             self.advance_chain();
             self.explain();
         }
@@ -308,13 +308,13 @@ impl Drive {
     pub fn deadline(&self) -> Option<Instant> {
         let servo = self.servo.deadline().filter(|_| self.powered);
         let (motor, chain) = (self.motor.deadline(), self.chain.deadline());
-        let ends = [self.watchdog_at(), servo, motor, chain, self.troubles.deadline()];
+        let ends = [self.watchdog_at(), servo, motor, chain, self.device_faults.deadline()];
         ends.into_iter().flatten().min()
     }
 
     /// When the first watchdog expires if the master says no more.
     pub fn watchdog_at(&self) -> Option<Instant> {
-        self.holds.iter().chain([&self.silence]).filter_map(Hold::deadline).min()
+        self.word_watchdogs.iter().chain([&self.silence]).filter_map(Watchdog::deadline).min()
     }
 
     /// The next change that has not been told yet.
@@ -390,7 +390,7 @@ impl Drive {
         self.take_settings(Moment::Start);
         self.interrupt = Interrupt::default();
         self.chain.end();
-        self.holds.iter_mut().chain([&mut self.silence]).for_each(Hold::stop);
+        self.word_watchdogs.iter_mut().chain([&mut self.silence]).for_each(Watchdog::stop);
         // What is active from the start has not risen.
         self.inputs = self.active_inputs();
         self.zero =
@@ -404,7 +404,7 @@ impl Drive {
         }
         self.gather_inputs();
         self.servo.advance(now, &mut |change| self.changes.push_back(change));
-        self.settle();
+        self.update_axis();
         self.begin_explaining();
     }
 
@@ -484,7 +484,7 @@ impl Drive {
             Action::RestoreFactory => {
                 self.bank.restore_factory(&self.model, self.station);
                 // Input words are 0 then, so there is nothing left to fall back.
-                self.holds.iter_mut().for_each(Hold::stop);
+                self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
                 self.hear();
                 self.changes.push_back(Change::FactoryRestored);
                 self.note_stored_all();
@@ -493,7 +493,7 @@ impl Drive {
             }
             Action::PowerCycle => self.restart = true,
         }
-        self.settle();
+        self.update_axis();
         done
     }
 }

@@ -4,11 +4,11 @@
 use super::Drive;
 use super::course::{Course, MoveRows};
 use super::settings::Moment;
-use crate::behaviour::{Commands, Control, Phase, Replan, Stage, Wants};
+use crate::behaviour::{Commands, Control, MotionReport, Phase, Replan, Wants};
 use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
-use crate::words::{
+use crate::vocabulary::{
     Action, HomeStarter, InhibitRule, Input, Modifier, Modifiers, Setting, SoftLimitRule, Threshold,
 };
 
@@ -28,7 +28,7 @@ impl Drive {
         self.gear().counts(position).saturating_add(self.zero)
     }
 
-    /// Has positive counts go the way that a row says, once the axis stands. The position register goes on from what it says.
+    /// Has positive counts go the origin that a row says, once the axis stands. The position register goes on from what it says.
     fn follow_direction(&mut self) {
         let row = self.model.wiring.axis.reversed;
         let reversed = row.is_some_and(|row| self.bank.value(&self.model, row) != 0);
@@ -41,7 +41,7 @@ impl Drive {
     }
 
     /// Where the axis is and how fast it goes, in the machine's coordinate, which no register shows and
-    /// which stays as it is when positive counts go the other way.
+    /// which stays as it is when positive counts go the other origin.
     pub fn axis_state(&self) -> State {
         let State { position, speed } = self.motor.feedback(self.now);
         let sign = if self.reversed { -1.0 } else { 1.0 };
@@ -69,7 +69,7 @@ impl Drive {
 
     /// Has the axis follow the power stage and the levels: after everything that may have changed them, and
     /// at the end of each motion.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn update_axis(&mut self) {
         if !self.powered {
             return;
         }
@@ -158,7 +158,7 @@ impl Drive {
         let [absolute, interrupt] =
             [Modifier::Absolute, Modifier::Interrupt].map(|it| modifiers.has(it));
         let done = match action {
-            Action::MoveStart => self.go_to(MoveRows::Axis, absolute, interrupt),
+            Action::MoveStart => self.go_to(MoveRows::AxisWiring, absolute, interrupt),
             Action::RunStart => self.start_run(interrupt),
             Action::HomeStart => self.home(HomeStarter::Command),
             _ => {
@@ -233,39 +233,41 @@ impl Drive {
     }
 
     /// What the axis tells, as its drive tells it.
-    fn told(&self, stage: Stage, segment: Option<u16>) -> Option<Change> {
+    fn told(&self, stage: MotionReport, segment: Option<u16>) -> Option<Change> {
         let at = |position: i64| self.wrapped(self.shown(position));
         let method = self.method;
         Some(match stage {
-            Stage::Moves(to) => match segment {
+            MotionReport::Moves(to) => match segment {
                 None => Change::Moves { to: at(to) },
                 Some(number) => Change::PositionSegment { number, to: at(to) },
             },
-            Stage::Runs(speed) => Change::Runs { mrpm: self.mrpm(speed) },
-            Stage::Jogs(speed) => match segment {
+            MotionReport::Runs(speed) => Change::Runs { mrpm: self.mrpm(speed) },
+            MotionReport::Jogs(speed) => match segment {
                 None => Change::Jogs { mrpm: self.mrpm(speed) },
                 Some(number) => Change::VelocitySegment { number, mrpm: self.mrpm(speed) },
             },
-            Stage::Replans(what) => Change::Replans(self.replanned(what)),
-            Stage::Pauses => Change::Pauses,
-            Stage::Resumes(to) => Change::Resumes { to: at(to) },
-            Stage::Clears(counts) => Change::DeviationCleared { counts },
-            Stage::Stops => Change::Stops,
-            Stage::Coasts => Change::Coasts,
-            Stage::Stands(position) => Change::Stands { at: at(position) },
-            Stage::Limit { forward, soft } => Change::Limit { forward, soft },
-            Stage::Hits(position) => Change::Hits { at: at(position) },
-            Stage::Deviates => Change::Deviates,
-            Stage::Seeks(step, speed) => Change::Seeks { method, step, mrpm: self.mrpm(speed) },
-            Stage::Finds(step, position) => Change::Finds { method, step, at: at(position) },
-            Stage::FindsLimit { forward, turns, at: position } => {
+            MotionReport::Replans(what) => Change::Replans(self.replanned(what)),
+            MotionReport::Pauses => Change::Pauses,
+            MotionReport::Resumes(to) => Change::Resumes { to: at(to) },
+            MotionReport::Clears(counts) => Change::DeviationCleared { counts },
+            MotionReport::Stops => Change::Stops,
+            MotionReport::Coasts => Change::Coasts,
+            MotionReport::Stands(position) => Change::Stands { at: at(position) },
+            MotionReport::Limit { forward, soft } => Change::Limit { forward, soft },
+            MotionReport::Hits(position) => Change::Hits { at: at(position) },
+            MotionReport::Deviates => Change::Deviates,
+            MotionReport::Seeks(step, speed) => {
+                Change::Seeks { method, step, mrpm: self.mrpm(speed) }
+            }
+            MotionReport::Finds(step, position) => Change::Finds { method, step, at: at(position) },
+            MotionReport::FindsLimit { forward, turns, at: position } => {
                 Change::FindsLimit { method, forward, turns, at: at(position) }
             }
-            Stage::Refines { forward } => Change::Refines { method, forward },
-            Stage::Refined(position) => Change::Origin { method, at: at(position) },
+            MotionReport::Refines { forward } => Change::Refines { method, forward },
+            MotionReport::Refined(position) => Change::Origin { method, at: at(position) },
             // Told once the position register says what it is to say.
-            Stage::Homed(_) => return None,
-            Stage::Lost { why, .. } => Change::HomingLost { method, why },
+            MotionReport::Homed(_) => return None,
+            MotionReport::Lost { why, .. } => Change::HomingLost { method, why },
         })
     }
 
@@ -279,7 +281,7 @@ impl Drive {
             Replan::StartSpeed(speed) => Replanned::StartSpeed { mrpm: self.mrpm(speed) },
             Replan::Accel(accel) => Replanned::Acceleration { mrpm_per_s: slope(accel) },
             Replan::Decel(decel) => Replanned::Deceleration { mrpm_per_s: slope(decel) },
-            Replan::Way(by) => Replanned::Way { by },
+            Replan::HomeOffset(by) => Replanned::HomeOffset { by },
             Replan::TimeLimit(time) => Replanned::TimeLimit { time },
         }
     }

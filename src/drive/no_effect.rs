@@ -11,7 +11,7 @@ use crate::behaviour::{Control, Phase};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Shows, Wiring};
 use crate::time::Instant;
-use crate::words::{Input, Inputs, Lasts, RowId, Word};
+use crate::vocabulary::{Input, Inputs, Lasts, Named, RowId};
 
 const INPUTS: usize = Input::ALL.len();
 
@@ -32,12 +32,12 @@ pub(super) struct NoEffect {
 #[derive(Debug, Clone, Copy, Default)]
 struct Active {
     since: Instant,
-    told: Told,
+    told: Reported,
 }
 
 /// What was told of an active signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Told {
+enum Reported {
     /// Nothing yet.
     #[default]
     Nothing,
@@ -97,10 +97,10 @@ impl Drive {
             return;
         }
         let told = match done {
-            Ok(()) => Told::Acts,
+            Ok(()) => Reported::Acts,
             Err(why) => {
                 self.ignore(Ordered::Input(input), why);
-                Told::Why(self.root_of(why))
+                Reported::Why(self.root_of(why))
             }
         };
         self.no_effect.inputs[input as usize].told = told;
@@ -108,12 +108,12 @@ impl Drive {
 
     /// What was active before power came on is nobody's order.
     pub(super) fn begin_explaining(&mut self) {
-        self.no_effect.inputs = [Active { since: self.now, told: Told::Nothing }; INPUTS];
+        self.no_effect.inputs = [Active { since: self.now, told: Reported::Nothing }; INPUTS];
         for input in Input::ALL {
             let told = match self.acts(*input) {
-                Acts::Level(why) => why.map_or(Told::Acts, Told::Why),
-                Acts::Edge(_) => Told::Why(Ignored::PowerOff),
-                Acts::Other => Told::Acts,
+                Acts::Level(why) => why.map_or(Reported::Acts, Reported::Why),
+                Acts::Edge(_) => Reported::Why(Ignored::PowerOff),
+                Acts::Other => Reported::Acts,
             };
             self.no_effect.inputs[*input as usize].told = told;
         }
@@ -126,7 +126,7 @@ impl Drive {
     pub(super) fn look_at_inputs(&mut self, before: Inputs) {
         let (now, inputs) = (self.now, self.inputs);
         for input in inputs.risen_since(before).iter() {
-            self.no_effect.inputs[input as usize] = Active { since: now, told: Told::Nothing };
+            self.no_effect.inputs[input as usize] = Active { since: now, told: Reported::Nothing };
         }
         self.look_at_bits(before);
     }
@@ -141,21 +141,21 @@ impl Drive {
             let Active { since, told } = self.no_effect.inputs[input as usize];
             let told = match (self.acts(input), told) {
                 (Acts::Other, told) => told,
-                (Acts::Level(None), _) => Told::Acts,
+                (Acts::Level(None), _) => Reported::Acts,
                 (Acts::Level(Some(why)), told) => {
-                    let known = told == Told::Why(why);
-                    let shown = told == Told::Acts && why.shows_itself();
+                    let known = told == Reported::Why(why);
+                    let shown = told == Reported::Acts && why.shows_itself();
                     if !known && !shown && !self.is_older(input, why) {
                         self.ignore(Ordered::Input(input), why);
                     }
-                    Told::Why(why)
+                    Reported::Why(why)
                 }
                 // What it has started is over: from now on it takes another edge.
-                (Acts::Edge(Some(why)), Told::Acts) if why.ends_motions() => Told::Why(why),
-                (Acts::Edge(None), Told::Why(why)) if why.passes() => {
+                (Acts::Edge(Some(why)), Reported::Acts) if why.ends_motions() => Reported::Why(why),
+                (Acts::Edge(None), Reported::Why(why)) if why.passes() => {
                     let why = Ignored::NoEdge { since };
                     self.ignore(Ordered::Input(input), why);
-                    Told::Why(why)
+                    Reported::Why(why)
                 }
                 (Acts::Edge(_), told) => told,
             };
@@ -289,7 +289,7 @@ impl Drive {
         for bit in (0..16u8).filter(|bit| raw >> bit & 1 != 0) {
             let kind = match self.bit(source, bit) {
                 Ok(_) => &mut bits.reach,
-                Err(Ignored::Disabled { .. } | Ignored::Claimed { .. }) => &mut bits.kept,
+                Err(Ignored::Disabled { .. } | Ignored::Overridden { .. }) => &mut bits.kept,
                 // The log tells of such a function once, whatever asks for it.
                 Err(Ignored::NotSimulated) => continue,
                 Err(_) => &mut bits.idle,
@@ -329,8 +329,8 @@ impl Drive {
         let signal = bits.iter().find(|(it, _)| *it == bit).map(|(_, signal)| *signal);
         let mut absent = absent.input_bits.iter().filter(|(it, _)| it == row);
         let is_absent = absent.any(|(_, bits)| bits.iter().any(|(it, _)| *it == bit));
-        match self.claimed_by(*row, bit) {
-            Some(row) => Err(Ignored::Claimed { row }),
+        match self.overridden_by(*row, bit) {
+            Some(row) => Err(Ignored::Overridden { row }),
             None if is_absent => Err(Ignored::NotSimulated),
             None => signal.ok_or(Ignored::Nothing),
         }

@@ -1,11 +1,11 @@
-//! What a committed write sets off: input words refreshed, commands given, the address changed.
+//! What a committed write sets off: input words refreshed, commands issued, the address changed.
 
-use super::{Drive, Given};
+use super::{Drive, IssuedCommand};
 use crate::bank::WritePlan;
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{self, Applies, Reaction};
 use crate::time::Duration;
-use crate::words::{Action, Modifier, Modifiers, RowId};
+use crate::vocabulary::{Action, Modifier, Modifiers, RowId};
 
 impl Drive {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
@@ -19,7 +19,7 @@ impl Drive {
                 Reaction::InputWord(word) => {
                     inputs = true;
                     let time = self.hold_time();
-                    self.holds[usize::from(word)].refresh(self.now, time);
+                    self.word_watchdogs[usize::from(word)].refresh(self.now, time);
                 }
                 Reaction::Line => line = true,
                 Reaction::Timeout => self.hear(),
@@ -27,7 +27,7 @@ impl Drive {
         }
         // What was written may be the time that words hold.
         let time = self.hold_time();
-        self.holds.iter_mut().for_each(|hold| hold.retime(time));
+        self.word_watchdogs.iter_mut().for_each(|hold| hold.retime(time));
         self.expire_words();
         if inputs {
             self.gather_inputs();
@@ -36,7 +36,7 @@ impl Drive {
             self.follow_line_settings();
         }
         // What was written may be a limit that the axis goes by.
-        self.settle();
+        self.update_axis();
         self.tell_not_simulated();
         // Commands act on what the same request has written, so they come last.
         let mut cleared = false;
@@ -54,7 +54,7 @@ impl Drive {
             if let Reaction::InputWord(word) = reaction
                 && self.bank.raw(row) == 0
             {
-                self.holds[usize::from(word)].stop();
+                self.word_watchdogs[usize::from(word)].stop();
             }
         }
         if cleared {
@@ -71,7 +71,7 @@ impl Drive {
         let model = self.model.clone();
         let Some(words) = &model.wiring.input_words else { return };
         let mut expired = false;
-        for (hold, word) in self.holds.iter_mut().zip(&words.rows) {
+        for (hold, word) in self.word_watchdogs.iter_mut().zip(&words.rows) {
             let (Some(held), Some(rule)) = (hold.expired(self.now), &words.hold) else { continue };
             self.bank.set(*word, 0);
             let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
@@ -84,13 +84,13 @@ impl Drive {
         }
     }
 
-    /// How long a write of an input word holds; `None` for ever.
+    /// How long a write of an input word word_watchdogs; `None` for ever.
     fn hold_time(&self) -> Option<Duration> {
         self.time_in(self.model.wiring.input_words.as_ref()?.hold.as_ref()?)
     }
 
     /// The time that a master has for something; `None` for ever.
-    pub(super) fn time_in(&self, hold: &model::Hold) -> Option<Duration> {
+    pub(super) fn time_in(&self, hold: &model::HoldTime) -> Option<Duration> {
         match self.bank.value(&self.model, hold.row) {
             0 => hold.zero,
             time => hold.unit.duration(time),
@@ -144,7 +144,7 @@ impl Drive {
     fn give(&mut self, action: Action, modifiers: Modifiers) {
         let done = self.act(action, modifiers);
         if action.adds_up(modifiers) {
-            self.given = Some(Given { action, obeyed: done.is_ok() });
+            self.issued = Some(IssuedCommand { action, obeyed: done.is_ok() });
         }
         if let Err(why) = done {
             self.ignore(Ordered::Action(action), why);

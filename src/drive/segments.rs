@@ -1,12 +1,12 @@
 //! Moves and runs that rising edges start, by number and in chains.
 
 use super::Drive;
-use super::course::{Course, MoveRows, Way};
-use crate::behaviour::{MOST_WAITS, Phase, Rule, Wait};
+use super::course::{Course, MoveOrigin, MoveRows};
+use crate::behaviour::{ChainRule, MOST_WAITS, Phase, Wait};
 use crate::event::{Change, Ignored};
-use crate::model::{ChainRules, Link};
+use crate::model::{ChainLink, ChainRules};
 use crate::time::Duration;
-use crate::words::{Condition, Input, Inputs, Lasts, Setting, Target};
+use crate::vocabulary::{Condition, Input, Inputs, Lasts, Setting, Target};
 
 impl Drive {
     /// Starts what the edges in `risen` ask for, in the order of the catalogue.
@@ -27,7 +27,7 @@ impl Drive {
                 _ => self.start_velocity_segment(),
             };
             self.heed(input, started);
-            self.settle();
+            self.update_axis();
         }
     }
 
@@ -75,9 +75,9 @@ impl Drive {
             return self.end_chain(to, why);
         }
         self.changes.push_back(Change::ChainStep { from, to, why });
-        // The motion under way, if there is one, is that of the segment which gives way.
+        // The motion under origin, if there is one, is that of the segment which gives origin.
         match self.move_by_segment(to, true) {
-            Ok(()) => self.settle(),
+            Ok(()) => self.update_axis(),
             Err(why) => self.end_chain(to, why),
         }
     }
@@ -90,7 +90,7 @@ impl Drive {
     fn start_move(&mut self) -> Result<(), Ignored> {
         let interrupt = self.motor.phase() == Phase::Running;
         let absolute = self.axis(self.order_moment()).is_set(Setting::MoveAbsolute);
-        self.go_to(MoveRows::Axis, absolute && !interrupt, interrupt)
+        self.go_to(MoveRows::AxisWiring, absolute && !interrupt, interrupt)
     }
 
     fn start_position_segment(&mut self) -> Result<(), Ignored> {
@@ -99,7 +99,7 @@ impl Drive {
         self.move_by_segment(self.selected(first), false)
     }
 
-    /// Starts position segment `number`. In a chain it takes the place of the segment under way; otherwise
+    /// Starts position segment `number`. In a chain it takes the place of the segment under origin; otherwise
     /// of a run by an edge, from where that is.
     fn move_by_segment(&mut self, number: u16, chained: bool) -> Result<(), Ignored> {
         let model = self.model.clone();
@@ -159,7 +159,7 @@ impl Drive {
         }
     }
 
-    /// May the velocity segment begin that is selected? At speed 0 it ends one that is under way; while speeds are clamped
+    /// May the velocity segment begin that is selected? At speed 0 it ends one that is under origin; while speeds are clamped
     /// to 0 it waits.
     fn may_run_velocity(&self, under_way: bool) -> Result<(), Ignored> {
         match self.wanted_run() {
@@ -183,16 +183,16 @@ impl Drive {
         let (now, zero, gear) = (self.now, self.zero, self.gear());
         // A target is a place as the position register counts, which may have begun anew.
         let begun = self.position() - self.wrapped(self.position());
-        let mut way = Way { from: begun, zero, gear, reverse };
+        let mut origin = MoveOrigin { from: begun, zero, gear, reverse };
         let target = |here: i64| {
             if !absolute {
-                way.from = gear.units(here.saturating_sub(zero));
+                origin.from = gear.units(here.saturating_sub(zero));
             }
-            way.target(by)
+            origin.target(by)
         };
         self.motor.start_move(now, target, ramp, interrupt)?;
         self.take_settings(moment);
-        self.course = Some(Course::Move { rows, way });
+        self.course = Some(Course::Move { rows, origin });
         self.tell_stages(rows.segment());
         self.replace_interrupt();
         self.chain.end();
@@ -202,11 +202,11 @@ impl Drive {
     /// Finds out anew when the axis comes to the places that its chain waits for.
     pub(super) fn look_at_places(&mut self) {
         let (now, motor) = (self.now, &self.motor);
-        self.chain.look(now, |place| motor.reaches(now, place));
+        self.chain.sample(now, |place| motor.reaches(now, place));
     }
 
-    /// What the rows of a segment say about when it gives way.
-    fn chain_rule(&self, rules: &ChainRules, link: &Link) -> Rule {
+    /// What the rows of a segment say about when it gives origin.
+    fn chain_rule(&self, rules: &ChainRules, link: &ChainLink) -> ChainRule {
         let raw = self.bank.raw(link.rule);
         let is_set = |bit: Option<u8>| bit.is_some_and(|bit| raw >> bit & 1 != 0);
         let mut waits = [None; MOST_WAITS];
@@ -218,13 +218,13 @@ impl Drive {
                     let time = Duration::try_from_secs_f64(value.max(0.0));
                     Wait::Delay(time.unwrap_or(Duration::MAX))
                 }
-                Condition::Step => Wait::Step,
+                Condition::HomingStep => Wait::HomingStep,
                 Condition::Position => {
                     let place = self.place(value.round() as i64);
                     Wait::Position { place, at: self.motor.reaches(self.now, place) }
                 }
             });
         }
-        Rule { waits, all: is_set(rules.all), through: is_set(rules.through) }
+        ChainRule { waits, all: is_set(rules.all), through: is_set(rules.through) }
     }
 }

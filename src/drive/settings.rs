@@ -4,7 +4,7 @@ use super::Drive;
 use crate::behaviour::{Ramp, Slope};
 use crate::model::{Applies, Choice, Counts, SettingRow};
 use crate::units::{Dimension, Unit};
-use crate::words::{RowId, Setting, Taken};
+use crate::vocabulary::{RowId, Setting, Taken};
 
 /// When settings are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub(super) enum Moment {
 }
 
 impl Moment {
-    /// Does the value count that the row holds then? Otherwise one that it held before.
+    /// Does the value count that the row word_watchdogs then? Otherwise one that it held before.
     fn takes(self, it: &SettingRow) -> bool {
         match (it.taken, self) {
             (Taken::Live, _) | (_, Self::Start) | (Taken::AtOrder, Self::Order) => true,
@@ -30,9 +30,9 @@ impl Moment {
     }
 }
 
-/// The rows that a motion goes by, and the drive that holds their values.
+/// The rows that a motion goes by, and the drive that word_watchdogs their values.
 #[derive(Clone, Copy)]
-pub(super) struct Settings<'a> {
+pub(super) struct MotionSettings<'a> {
     drive: &'a Drive,
     rows: &'a [SettingRow],
     moment: Moment,
@@ -40,16 +40,20 @@ pub(super) struct Settings<'a> {
 
 impl Drive {
     /// What `rows` say to somebody who looks at `moment`.
-    pub(super) fn settings<'a>(&'a self, rows: &'a [SettingRow], moment: Moment) -> Settings<'a> {
-        Settings { drive: self, rows, moment }
+    pub(super) fn settings<'a>(
+        &'a self,
+        rows: &'a [SettingRow],
+        moment: Moment,
+    ) -> MotionSettings<'a> {
+        MotionSettings { drive: self, rows, moment }
     }
 
     /// What the rows of the axis say to somebody who looks at `moment`.
-    pub(super) fn axis(&self, moment: Moment) -> Settings<'_> {
+    pub(super) fn axis(&self, moment: Moment) -> MotionSettings<'_> {
         self.settings(&self.model.wiring.axis.settings, moment)
     }
 
-    /// The moment of an order that is given now.
+    /// The moment of an order that is issued now.
     pub(super) fn order_moment(&self) -> Moment {
         if self.motor.is_moving() { Moment::Order } else { Moment::Start }
     }
@@ -105,7 +109,7 @@ impl Drive {
     }
 }
 
-impl Settings<'_> {
+impl MotionSettings<'_> {
     /// How far, or where to, and how.
     pub(super) fn next_move(self) -> (i64, Ramp) {
         let target = self.counts(Setting::MoveTarget).unwrap_or(0);
@@ -142,7 +146,7 @@ impl Settings<'_> {
         Ramp { speed, accel, decel, start_speed }
     }
 
-    /// What a row holds in counts, in units of position or in increments of the encoder.
+    /// What a row word_watchdogs in counts, in units of position or in increments of the encoder.
     pub(super) fn counts(self, setting: Setting) -> Option<i64> {
         let value = self.value(setting)?;
         let row = self.row(setting)?.row;
@@ -153,7 +157,7 @@ impl Settings<'_> {
         Some(counts.round() as i64)
     }
 
-    /// Counts for what a row holds in units of position.
+    /// Counts for what a row word_watchdogs in units of position.
     pub(super) fn way(self, setting: Setting) -> Option<i64> {
         self.counts(setting).map(|units| self.drive.gear().counts(units))
     }

@@ -2,7 +2,7 @@
 
 use crate::bank::Kept;
 use crate::motion::Machine;
-use crate::words::RowId;
+use crate::vocabulary::RowId;
 
 /// A station as the bench sets it up.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::Drive;
 use crate::model::Shows;
-use crate::words::{Output, Quantity, RowId};
+use crate::vocabulary::{Output, Quantity, RowId};
 
 impl Drive {
     /// The bits of what `row` shows right now.

@@ -4,7 +4,7 @@ use super::Drive;
 use crate::event::{Ignored, Ordered};
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
-use crate::words::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
+use crate::vocabulary::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
 
 impl Drive {
     /// Looks at every source again and tells the behaviours what changed.
@@ -33,7 +33,7 @@ impl Drive {
             self.ignore(Ordered::InputOff(Input::ServoOn), Ignored::Latched);
         }
         self.select_velocity();
-        self.settle();
+        self.update_axis();
         if risen.has(Input::HomeStart) {
             self.home_by(HomeStarter::Input);
         }
@@ -147,7 +147,7 @@ impl Drive {
                 active = active & !(1 << i) | u32::from(on) << i;
             }
         }
-        self.troubles.signals(active ^ closed)
+        self.device_faults.signals(active ^ closed)
     }
 
     /// The switch of the machine that `signal` is wired to. Which end of the machine is its positive one does not
@@ -212,7 +212,7 @@ impl Drive {
         }
     }
 
-    /// What bits of rows stand for that nobody claims.
+    /// What bits of rows stand for that nobody bit_overrides.
     pub(super) fn active_bits<S: Copy>(
         &self,
         rows: &[(RowId, Vec<(u8, S)>)],
@@ -220,7 +220,7 @@ impl Drive {
     ) {
         for (row, bits) in rows {
             for (bit, it) in bits {
-                if self.is_set(*row, u16::from(*bit)) && !self.is_claimed(*row, *bit) {
+                if self.is_set(*row, u16::from(*bit)) && !self.is_overridden(*row, *bit) {
                     each(*it);
                 }
             }
@@ -232,16 +232,16 @@ impl Drive {
     }
 
     /// Is the signal of this bit somebody else's?
-    fn is_claimed(&self, row: RowId, bit: u8) -> bool {
-        self.claimed_by(row, bit).is_some()
+    fn is_overridden(&self, row: RowId, bit: u8) -> bool {
+        self.overridden_by(row, bit).is_some()
     }
 
     /// The setting that gives the signal of this bit to somebody else.
-    pub(super) fn claimed_by(&self, row: RowId, bit: u8) -> Option<RowId> {
-        let mut claims =
-            self.model.wiring.claims.iter().filter(|it| (it.row, it.bit) == (row, bit));
-        let claim =
-            claims.find(|claim| claim.by.of(self.bank.value(&self.model, claim.by.row)) != 0);
+    pub(super) fn overridden_by(&self, row: RowId, bit: u8) -> Option<RowId> {
+        let mut bit_overrides =
+            self.model.wiring.bit_overrides.iter().filter(|it| (it.row, it.bit) == (row, bit));
+        let claim = bit_overrides
+            .find(|claim| claim.by.of(self.bank.value(&self.model, claim.by.row)) != 0);
         claim.map(|claim| claim.by.row)
     }
 
@@ -252,7 +252,7 @@ impl Drive {
 }
 
 impl Shown {
-    /// Does it show as active, given the signals?
+    /// Does it show as active, issued the signals?
     pub(super) fn is_active(self, outputs: Outputs) -> bool {
         outputs.has(self.signal) != self.inverted
     }

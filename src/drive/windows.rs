@@ -5,7 +5,7 @@ use crate::behaviour::Control;
 use crate::model::Number;
 use crate::time::{Duration, Instant};
 use crate::units::Dimension;
-use crate::words::{Output, Outputs, Threshold};
+use crate::vocabulary::{Output, Outputs, Threshold};
 
 impl Drive {
     /// `outputs` with those that are about speeds.
@@ -76,14 +76,14 @@ impl Drive {
         self.in_position_at().is_some_and(|at| at <= self.now)
     }
 
-    /// Is the command at rest in position control, and the axis with it for as long as it takes to settle?
+    /// Is the command at rest in position control, and the axis with it for as long as it takes to update_axis?
     fn is_settled(&self) -> bool {
         let at = self.motor.rests_at(self.now, self.position_window());
         let follows = self.motor.control() == Some(Control::Position);
         follows && at.is_some_and(|at| at + self.settling_time() <= self.now)
     }
 
-    /// When the axis is, or will be, where its last move was to end, for as long as it takes to settle. That move
+    /// When the axis is, or will be, where its last move was to end, for as long as it takes to update_axis. That move
     /// has ended.
     pub(super) fn in_position_at(&self) -> Option<Instant> {
         let at = self.motor.arrives_at(self.now, self.position_window())?;
@@ -95,9 +95,9 @@ impl Drive {
     }
 
     fn settling_time(&self) -> Duration {
-        let settle = self.threshold(Threshold::PositionSettle).unwrap_or(0.0);
+        let update_axis = self.threshold(Threshold::PositionSettle).unwrap_or(0.0);
         // Rows hold no times that are negative or beyond a few years.
-        Duration::try_from_secs_f64(settle).unwrap_or_default()
+        Duration::try_from_secs_f64(update_axis).unwrap_or_default()
     }
 
     /// The number in the base unit of its dimension, increments in counts.

@@ -1,7 +1,7 @@
 //! Orders that have no effect: what was ordered, and why nothing came of it.
 
 use crate::time::Instant;
-use crate::words::{Action, AlarmCause, Input, RowId};
+use crate::vocabulary::{Action, AlarmCause, Input, RowId};
 
 /// Something that a master, or whoever wires the terminals, asks a drive for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,7 +131,7 @@ pub enum Ignored {
         bit: Option<u8>,
     },
     /// A setting gives the signal to something else.
-    Claimed {
+    Overridden {
         /// The setting.
         row: RowId,
     },

@@ -36,7 +36,7 @@ pub enum Replanned {
         mrpm_per_s: Option<i64>,
     },
     /// How far a homing goes on from the origin.
-    Way {
+    HomeOffset {
         /// In counts of the drive.
         by: i64,
     },

@@ -1,9 +1,9 @@
-//! From a rule as it is written to a [`Rule`], or to everything that is wrong with it.
+//! From a rule as it is written to a [`FaultRule`], or to everything that is wrong with it.
 //!
 //! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
 
-use super::raw::{RawFault, RawFunctions, RawMillis, RawRegister};
-use super::{Act, Habits, Kind, Rule, When, spec};
+use super::raw::{RawFault, RawFaultRegister, RawFunctions, RawMillis};
+use super::{Act, FaultKind, FaultRule, LineBehaviour, When, spec};
 use crate::problem::{Path, Problem};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
@@ -12,12 +12,12 @@ use crate::wire::{BROADCAST, Span};
 use std::ops::RangeInclusive;
 
 /// What a rule has to know of its line when it is read.
-pub trait Site {
+pub trait FaultContext {
     /// Is it Modbus TCP, without checksums and wires?
     fn is_tcp(&self) -> bool;
 
     /// What it always does already.
-    fn habits(&self) -> &Habits;
+    fn line_behaviour(&self) -> &LineBehaviour;
 
     /// Where the row called `name` can be reached.
     ///
@@ -37,11 +37,11 @@ pub struct NoRow {
 
 /// What one rule as it is written makes of a line.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Weather {
+pub struct FaultSet {
     /// The rule, or those of a preset.
-    pub rules: Vec<Rule>,
-    /// The habits of a preset.
-    pub habits: Habits,
+    pub rules: Vec<FaultRule>,
+    /// The line behaviour of a preset.
+    pub line_behaviour: LineBehaviour,
 }
 
 /// Compiles the rule at `path` for `site`, where rules called `taken` stand already. A preset gives several
@@ -49,39 +49,39 @@ pub struct Weather {
 pub fn compile(
     raw: &RawFault,
     path: &Path,
-    site: &dyn Site,
+    site: &dyn FaultContext,
     taken: &[&str],
     problems: &mut Vec<Problem>,
-) -> Weather {
-    let mut reader = Reader { raw, path, site, problems };
+) -> FaultSet {
+    let mut reader = FaultReader { raw, path, site, problems };
     reader.refuse_idle_keys();
     let name = reader.name(taken);
     let when = reader.when();
     let Some(specs) = raw.act.preset() else {
-        let rules = reader.act().map(|act| Rule { name, when, act }).into_iter().collect();
-        return Weather { rules, habits: Habits::default() };
+        let rules = reader.act().map(|act| FaultRule { name, when, act }).into_iter().collect();
+        return FaultSet { rules, line_behaviour: LineBehaviour::default() };
     };
-    let mut rules: Vec<Rule> = Vec::new();
+    let mut rules: Vec<FaultRule> = Vec::new();
     for spec in specs {
         let names: Vec<_> = rules.iter().map(|it| it.name.as_str()).collect();
         for rule in spec::parse(spec, site, &names).unwrap_or_default().rules {
             let own = rule.when;
             let when = When { chance: own.chance, ..when.clone() };
-            rules.push(Rule { name: rule.name, when, act: rule.act });
+            rules.push(FaultRule { name: rule.name, when, act: rule.act });
         }
     }
     rules.iter_mut().for_each(|rule| rule.name = format!("{name}.{}", rule.name));
-    Weather { rules, habits: raw.act.habits() }
+    FaultSet { rules, line_behaviour: raw.act.line_behaviour() }
 }
 
-struct Reader<'a> {
+struct FaultReader<'a> {
     raw: &'a RawFault,
     path: &'a Path,
-    site: &'a dyn Site,
+    site: &'a dyn FaultContext,
     problems: &'a mut Vec<Problem>,
 }
 
-impl Reader<'_> {
+impl FaultReader<'_> {
     fn refuse(&mut self, key: &str, what: impl Into<String>, advice: Option<&str>) {
         let problem = Problem::value(self.path.key(key), what);
         self.problems.push(problem.advise_if(advice.map(str::to_owned)));
@@ -101,7 +101,7 @@ impl Reader<'_> {
             ("to", raw.to.is_some()),
         ];
         for (key, _) in own.iter().filter(|(key, given)| *given && !kind.keys().contains(key)) {
-            let with = Kind::ALL.iter().filter(|kind| kind.keys().contains(key));
+            let with = FaultKind::ALL.iter().filter(|kind| kind.keys().contains(key));
             let with: Vec<_> = with.map(|kind| kind.name()).collect();
             let what = format!("`{key}` changes nothing for `{}`", kind.name());
             let advice = format!("it goes with {}", with.join(", "));
@@ -118,7 +118,7 @@ impl Reader<'_> {
             let problem = Problem::key(self.path.key(key), what);
             self.problems.push(problem.advise("write out the rules that you want"));
         }
-        self.refuse_half_a_habit();
+        self.refuse_incomplete_line_behaviour();
         if let Some(why) = kind.impossible_on_tcp().filter(|_| self.site.is_tcp()) {
             self.refuse("do", why, None);
         }
@@ -128,10 +128,10 @@ impl Reader<'_> {
         }
     }
 
-    /// A habit is the whole line's, always, and a line has one of each.
-    fn refuse_half_a_habit(&mut self) {
-        let (raw, habits) = (self.raw, self.raw.act.habits());
-        if habits.is_empty() {
+    /// A setting of line behaviour is the whole line's, always, and a line has one of each.
+    fn refuse_incomplete_line_behaviour(&mut self) {
+        let (raw, line_behaviour) = (self.raw, self.raw.act.line_behaviour());
+        if line_behaviour.is_empty() {
             return;
         }
         let conditions = [
@@ -143,10 +143,10 @@ impl Reader<'_> {
         ];
         let preset = raw.act.name();
         for (key, _) in conditions.iter().filter(|(_, given)| *given) {
-            let what = format!("`{preset}` is a habit of the whole line and takes no `{key}`");
+            let what = format!("`{preset}` applies to the whole line and takes no `{key}`");
             self.problems.push(Problem::key(self.path.key(key), what));
         }
-        if let Some(key) = habits.shared(self.site.habits()) {
+        if let Some(key) = line_behaviour.shared(self.site.line_behaviour()) {
             let what = format!("`{preset}` brings a `{key}`, and the line has one");
             self.refuse("do", what, None);
         }
@@ -213,8 +213,8 @@ impl Reader<'_> {
     fn spans(&mut self) -> Vec<Span> {
         let name = match &self.raw.register {
             None => return Vec::new(),
-            Some(RawRegister::Address(address)) => return vec![Span::one(*address)],
-            Some(RawRegister::Name(name)) => name,
+            Some(RawFaultRegister::Address(address)) => return vec![Span::one(*address)],
+            Some(RawFaultRegister::Name(name)) => name,
         };
         let unknown = match self.site.spans(name) {
             Ok(spans) => return spans,
@@ -264,37 +264,42 @@ impl Reader<'_> {
     fn act(&mut self) -> Option<Act> {
         let raw = self.raw;
         Some(match raw.act {
-            Kind::LoseRequest => Act::LoseRequest,
-            Kind::LoseReply => Act::LoseReply,
-            Kind::BadCrc => Act::BadCrc,
+            FaultKind::LoseRequest => Act::LoseRequest,
+            FaultKind::LoseReply => Act::LoseReply,
+            FaultKind::BadCrc => Act::BadCrc,
             // The shortest reply has 24 bits that may be turned over, on TCP.
-            Kind::FlipBits => {
+            FaultKind::FlipBits => {
                 Act::FlipBits { bits: self.within("bits", raw.bits, 1..=16).unwrap_or(1) }
             }
-            Kind::Truncate => Act::Truncate { bytes: self.bytes() },
-            Kind::Extra => Act::Extra { bytes: self.bytes() },
-            Kind::Garbage => Act::Garbage { bytes: self.bytes() },
-            Kind::Delay => self.delay()?,
-            Kind::Late => Act::Late,
-            Kind::Duplicate => Act::Duplicate,
-            Kind::Split => Act::Split {
+            FaultKind::Truncate => Act::Truncate { bytes: self.bytes() },
+            FaultKind::Extra => Act::Extra { bytes: self.bytes() },
+            FaultKind::Garbage => Act::Garbage { bytes: self.bytes() },
+            FaultKind::Delay => self.delay()?,
+            FaultKind::Late => Act::Late,
+            FaultKind::Duplicate => Act::Duplicate,
+            FaultKind::Split => Act::Split {
                 at: self.within("at", raw.at, 1..=512),
                 gap_ms: self.within("gap_ms", raw.gap_ms, 1..=u32::MAX).unwrap_or(20),
             },
-            Kind::WrongUnit => {
+            FaultKind::WrongUnit => {
                 if let Some(to) = raw.to.filter(|to| raw.unit == Some(*to)) {
                     self.refuse("to", format!("unit {to} is the right one"), None);
                 }
                 Act::WrongUnit { to: raw.to }
             }
-            Kind::WrongFunction => Act::WrongFunction { to: self.within("to", raw.to, 1..=0x7F) },
-            Kind::Exception => {
+            FaultKind::WrongFunction => {
+                Act::WrongFunction { to: self.within("to", raw.to, 1..=0x7F) }
+            }
+            FaultKind::Exception => {
                 self.needs("code", raw.code.is_some())?;
                 Act::Exception { code: self.within("code", raw.code, 1..=0xFF)? }
             }
-            Kind::Busy => Act::Busy,
-            Kind::Echo => Act::Echo,
-            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => {
+            FaultKind::Busy => Act::Busy,
+            FaultKind::Echo => Act::Echo,
+            FaultKind::NoisyCable
+            | FaultKind::SleepyDrive
+            | FaultKind::UsbAdapter
+            | FaultKind::CrowdedLine => {
                 return None;
             }
         })

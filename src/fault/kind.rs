@@ -1,6 +1,6 @@
 //! The kinds of fault: the name of each in files, what it does, and the keys that it goes by.
 
-use super::{Chatter, Habits};
+use super::{Chatter, LineBehaviour};
 use crate::time::Duration;
 use serde::Deserialize;
 
@@ -13,11 +13,11 @@ macro_rules! kinds {
         /// What a rule does. The last few are presets: each stands for several rules.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
         #[cfg_attr(feature = "cli", derive(JsonSchema))]
-        pub enum Kind {
+        pub enum FaultKind {
             $(#[doc = $about] #[serde(rename = $name)] $variant,)*
         }
 
-        impl Kind {
+        impl FaultKind {
             /// Every kind.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
 
@@ -57,7 +57,7 @@ kinds! {
     CrowdedLine "crowded_line" "Preset: others talk on the line, and now and then at the same time." [],
 }
 
-impl Kind {
+impl FaultKind {
     /// The rules that a preset stands for, in compact form. The rare ones come first, since the first acts.
     pub fn preset(self) -> Option<&'static [&'static str]> {
         match self {
@@ -87,18 +87,18 @@ impl Kind {
         }
     }
 
-    /// The habits that a preset gives its line besides.
-    pub fn habits(self) -> Habits {
+    /// The line behaviour that a preset gives its line besides.
+    pub fn line_behaviour(self) -> LineBehaviour {
         let every = Duration::from_millis(50);
         match self {
             Self::UsbAdapter => {
-                Habits { chunk: Some(Duration::from_millis(16)), ..Habits::default() }
+                LineBehaviour { chunk: Some(Duration::from_millis(16)), ..LineBehaviour::default() }
             }
             Self::CrowdedLine => {
                 let chatter = Chatter { units: vec![241, 242, 243], every };
-                Habits { chatter: Some(chatter), ..Habits::default() }
+                LineBehaviour { chatter: Some(chatter), ..LineBehaviour::default() }
             }
-            _ => Habits::default(),
+            _ => LineBehaviour::default(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The rules of one line, in order, and what each has done.
 
-use super::{Kind, Rule};
-use crate::event::{Mishap, RuleId};
+use super::{FaultKind, FaultRule};
+use crate::event::{FaultEffect, RuleId};
 use crate::rng::{Fork, Rng};
 use crate::time::Instant;
 
@@ -14,14 +14,14 @@ use crate::time::Instant;
 pub struct Faults {
     seed: u64,
     line: String,
-    rules: Vec<Standing>,
+    rules: Vec<ActiveRule>,
     /// Name and kind of every rule that ever stood here, by number.
-    told: Vec<(String, Kind)>,
+    told: Vec<(String, FaultKind)>,
 }
 
 #[derive(Debug)]
-struct Standing {
-    rule: Rule,
+struct ActiveRule {
+    rule: FaultRule,
     id: RuleId,
     fork: Fork,
     seen: u64,
@@ -30,13 +30,13 @@ struct Standing {
 
 /// A rule that acts on a request or its reply.
 #[derive(Debug, Clone)]
-pub struct Strike {
+pub struct FaultHit {
     /// Which rule.
     pub rule: RuleId,
     /// How often it has acted by now.
     pub hit: u64,
     /// What it does.
-    pub mishap: Mishap,
+    pub effect: FaultEffect,
     /// For the bytes that it makes up.
     pub rng: Rng,
 }
@@ -50,7 +50,7 @@ impl Faults {
     /// Puts `rule` behind all others, unless there is one of that name. Was it put there? One that was
     /// removed before begins anew.
     #[must_use]
-    pub fn add(&mut self, rule: Rule) -> bool {
+    pub fn add(&mut self, rule: FaultRule) -> bool {
         if self.names().any(|name| name == rule.name) {
             return false;
         }
@@ -61,7 +61,7 @@ impl Faults {
         });
         self.told[number].1 = rule.act.kind();
         let fork = self.fork(&rule.name);
-        self.rules.push(Standing { rule, id: RuleId(number as u16), fork, seen: 0, hits: 0 });
+        self.rules.push(ActiveRule { rule, id: RuleId(number as u16), fork, seen: 0, hits: 0 });
         true
     }
 
@@ -88,30 +88,30 @@ impl Faults {
     }
 
     /// Name and kind of a rule, also of one that was removed.
-    pub fn told(&self, rule: RuleId) -> (&str, Kind) {
+    pub fn told(&self, rule: RuleId) -> (&str, FaultKind) {
         let (name, kind) = &self.told[usize::from(rule.0)];
         (name, *kind)
     }
 
     /// What happens to a request to `unit` at `now`: the first rule that holds acts.
-    pub fn strike(&mut self, now: Instant, unit: u8, request: &[u8]) -> Option<Strike> {
-        let mut strike = None;
+    pub fn fault_hit(&mut self, now: Instant, unit: u8, request: &[u8]) -> Option<FaultHit> {
+        let mut fault_hit = None;
         for it in &mut self.rules {
             if !it.rule.concerns(now, unit, request) {
                 continue;
             }
             it.seen += 1;
-            if strike.is_none() {
-                strike = it.strike(unit, request);
+            if fault_hit.is_none() {
+                fault_hit = it.fault_hit(unit, request);
             }
         }
-        strike
+        fault_hit
     }
 }
 
-impl Standing {
+impl ActiveRule {
     /// Acts, if it is its turn and its luck.
-    fn strike(&mut self, unit: u8, request: &[u8]) -> Option<Strike> {
+    fn fault_hit(&mut self, unit: u8, request: &[u8]) -> Option<FaultHit> {
         let when = &self.rule.when;
         let spent = when.count.is_some_and(|count| self.hits >= count);
         if spent || !when.is_turn(self.seen) {
@@ -123,7 +123,7 @@ impl Standing {
         }
         self.hits += 1;
         let function = request.first().copied().unwrap_or(0);
-        let mishap = self.rule.act.mishap(unit, function, &mut rng);
-        Some(Strike { rule: self.id, hit: self.hits, mishap, rng })
+        let effect = self.rule.act.effect(unit, function, &mut rng);
+        Some(FaultHit { rule: self.id, hit: self.hits, effect, rng })
     }
 }

@@ -1,6 +1,6 @@
 //! A fault rule as it is written: the reference of the format, in bench files and on the command line.
 
-use super::Kind;
+use super::FaultKind;
 use serde::Deserialize;
 
 #[cfg(feature = "cli")]
@@ -15,13 +15,13 @@ pub struct RawFault {
     pub name: Option<String>,
     /// What it does.
     #[serde(rename = "do")]
-    pub act: Kind,
+    pub act: FaultKind,
     /// Only requests to this unit.
     pub unit: Option<u8>,
     /// Only requests with this function code, or with one of these.
     pub function: Option<RawFunctions>,
     /// Only requests that touch this register: an address, a span of addresses, or the name of a row.
-    pub register: Option<RawRegister>,
+    pub register: Option<RawFaultRegister>,
     /// Only from this second of emulated time on.
     pub from: Option<f64>,
     /// Only before this second of emulated time.
@@ -66,7 +66,7 @@ pub enum RawFunctions {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(untagged, expecting = "a register is an address, a span such as 0x20-0x25, or a name")]
-pub enum RawRegister {
+pub enum RawFaultRegister {
     /// One address.
     Address(u16),
     /// A span, or the name of a row.

@@ -1,7 +1,7 @@
 //! One rule: when it acts, and what it does.
 
-use super::Kind;
-use crate::event::Mishap;
+use super::FaultKind;
+use crate::event::FaultEffect;
 use crate::rng::{Chance, Rng};
 use crate::time::{Duration, Instant};
 use crate::wire::function::EXCEPTION;
@@ -9,7 +9,7 @@ use crate::wire::{BROADCAST, LengthCheck, Request, Span};
 
 /// A rule.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Rule {
+pub struct FaultRule {
     /// Its name on its line.
     pub name: String,
     /// When it acts.
@@ -43,7 +43,7 @@ pub struct When {
 
 /// What a rule does, with what it goes by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)] // `Kind` and `RawFault` tell each.
+#[allow(missing_docs)] // `FaultKind` and `RawFault` tell each.
 pub enum Act {
     LoseRequest,
     LoseReply,
@@ -63,7 +63,7 @@ pub enum Act {
     Echo,
 }
 
-impl Rule {
+impl FaultRule {
     /// Is a request to `unit` at `now` an occurrence of this rule?
     pub(super) fn concerns(&self, now: Instant, unit: u8, request: &[u8]) -> bool {
         let When { functions, spans, from, until, .. } = &self.when;
@@ -96,24 +96,24 @@ fn touches(spans: &[Span], request: &[u8]) -> bool {
 
 impl Act {
     /// Its kind.
-    pub fn kind(self) -> Kind {
+    pub fn kind(self) -> FaultKind {
         match self {
-            Self::LoseRequest => Kind::LoseRequest,
-            Self::LoseReply => Kind::LoseReply,
-            Self::BadCrc => Kind::BadCrc,
-            Self::FlipBits { .. } => Kind::FlipBits,
-            Self::Truncate { .. } => Kind::Truncate,
-            Self::Extra { .. } => Kind::Extra,
-            Self::Garbage { .. } => Kind::Garbage,
-            Self::Delay { .. } => Kind::Delay,
-            Self::Late => Kind::Late,
-            Self::Duplicate => Kind::Duplicate,
-            Self::Split { .. } => Kind::Split,
-            Self::WrongUnit { .. } => Kind::WrongUnit,
-            Self::WrongFunction { .. } => Kind::WrongFunction,
-            Self::Exception { .. } => Kind::Exception,
-            Self::Busy => Kind::Busy,
-            Self::Echo => Kind::Echo,
+            Self::LoseRequest => FaultKind::LoseRequest,
+            Self::LoseReply => FaultKind::LoseReply,
+            Self::BadCrc => FaultKind::BadCrc,
+            Self::FlipBits { .. } => FaultKind::FlipBits,
+            Self::Truncate { .. } => FaultKind::Truncate,
+            Self::Extra { .. } => FaultKind::Extra,
+            Self::Garbage { .. } => FaultKind::Garbage,
+            Self::Delay { .. } => FaultKind::Delay,
+            Self::Late => FaultKind::Late,
+            Self::Duplicate => FaultKind::Duplicate,
+            Self::Split { .. } => FaultKind::Split,
+            Self::WrongUnit { .. } => FaultKind::WrongUnit,
+            Self::WrongFunction { .. } => FaultKind::WrongFunction,
+            Self::Exception { .. } => FaultKind::Exception,
+            Self::Busy => FaultKind::Busy,
+            Self::Echo => FaultKind::Echo,
         }
     }
 
@@ -127,31 +127,31 @@ impl Act {
     }
 
     /// What it does to a request to `unit` and its reply, with its numbers drawn.
-    pub(super) fn mishap(self, unit: u8, function: u8, rng: &mut Rng) -> Mishap {
+    pub(super) fn effect(self, unit: u8, function: u8, rng: &mut Rng) -> FaultEffect {
         match self {
-            Self::LoseRequest => Mishap::RequestLost,
-            Self::LoseReply => Mishap::ReplyLost,
-            Self::BadCrc => Mishap::BadChecksum,
-            Self::FlipBits { bits } => Mishap::BitsFlipped(bits),
-            Self::Truncate { bytes } => Mishap::Truncated(bytes),
-            Self::Extra { bytes } => Mishap::Extra(bytes),
-            Self::Garbage { bytes } => Mishap::Garbage(bytes),
+            Self::LoseRequest => FaultEffect::RequestLost,
+            Self::LoseReply => FaultEffect::ReplyLost,
+            Self::BadCrc => FaultEffect::BadChecksum,
+            Self::FlipBits { bits } => FaultEffect::BitsFlipped(bits),
+            Self::Truncate { bytes } => FaultEffect::Truncated(bytes),
+            Self::Extra { bytes } => FaultEffect::Extra(bytes),
+            Self::Garbage { bytes } => FaultEffect::Garbage(bytes),
             Self::Delay { least_ms, most_ms } => {
                 let [least, most] = [least_ms, most_ms].map(|ms| u64::from(ms) * 1000);
-                Mishap::Delayed(Duration::from_micros(rng.between(least, most)))
+                FaultEffect::Delayed(Duration::from_micros(rng.between(least, most)))
             }
-            Self::Late => Mishap::Late,
-            Self::Duplicate => Mishap::Duplicated,
+            Self::Late => FaultEffect::Late,
+            Self::Duplicate => FaultEffect::Duplicated,
             Self::Split { at, gap_ms } => {
-                Mishap::Split { at, gap: Duration::from_millis(gap_ms.into()) }
+                FaultEffect::Split { at, gap: Duration::from_millis(gap_ms.into()) }
             }
-            Self::WrongUnit { to } => Mishap::WrongUnit(to.unwrap_or(unit.wrapping_add(1))),
+            Self::WrongUnit { to } => FaultEffect::WrongUnit(to.unwrap_or(unit.wrapping_add(1))),
             Self::WrongFunction { to } => {
-                Mishap::WrongFunction(to.unwrap_or(function.wrapping_add(1) & !EXCEPTION))
+                FaultEffect::WrongFunction(to.unwrap_or(function.wrapping_add(1) & !EXCEPTION))
             }
-            Self::Exception { code } => Mishap::Exception(code),
-            Self::Busy => Mishap::Busy,
-            Self::Echo => Mishap::Echoed,
+            Self::Exception { code } => FaultEffect::Exception(code),
+            Self::Busy => FaultEffect::Busy,
+            Self::Echo => FaultEffect::Echoed,
         }
     }
 }

@@ -4,7 +4,7 @@
 //! here becomes the same tree as a map in a bench file and is checked by the same code.
 
 use super::raw::{KEYS, RawFault};
-use super::{Site, Weather, compile};
+use super::{FaultContext, FaultSet, compile};
 use crate::problem::{At, Mark, Path, Problem, Seg, section};
 use serde_yaml::{Mapping, Value};
 use std::collections::BTreeMap;
@@ -14,7 +14,11 @@ use std::ops::Range;
 ///
 /// # Errors
 /// Everything that is wrong with it, each with its place in `spec`.
-pub fn parse(spec: &str, site: &dyn Site, taken: &[&str]) -> Result<Weather, Vec<Problem>> {
+pub fn parse(
+    spec: &str,
+    site: &dyn FaultContext,
+    taken: &[&str],
+) -> Result<FaultSet, Vec<Problem>> {
     let mut problems = Vec::new();
     let cut = Cut::new(spec, &mut problems);
     let path = Path::root();

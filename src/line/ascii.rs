@@ -1,6 +1,6 @@
 //! ASCII framing (serial line, 2.5.2.1): `:` begins a frame whatever came before, CR LF ends it.
 
-use super::{Foreign, Heard, Units};
+use super::{Foreign, LineEvent, Units};
 use crate::time::{Duration, Instant};
 use crate::wire::{Frame, NoiseCause, ascii};
 
@@ -20,7 +20,7 @@ pub struct Ascii {
 }
 
 /// What one character did.
-enum Step {
+enum AsciiState {
     More,
     Whole,
     Noise(NoiseCause),
@@ -46,15 +46,15 @@ impl Ascii {
         self.last = now;
     }
 
-    pub fn next(&mut self, now: Instant, units: &Units) -> Option<Heard<'_>> {
+    pub fn next(&mut self, now: Instant, units: &Units) -> Option<LineEvent<'_>> {
         if std::mem::take(&mut self.given) {
             self.body.clear();
         }
         while let Some(&byte) = self.incoming.get(self.looked) {
             match self.step(byte) {
-                Step::More => {}
-                Step::Whole => return Some(self.whole(units)),
-                Step::Noise(why) => return Some(self.noise(why)),
+                AsciiState::More => {}
+                AsciiState::Whole => return Some(self.whole(units)),
+                AsciiState::Noise(why) => return Some(self.noise(why)),
             }
         }
         let silent = self.deadline().is_some_and(|deadline| deadline <= now);
@@ -73,18 +73,18 @@ impl Ascii {
         waiting.then(|| self.last + self.gap)
     }
 
-    pub fn heard_at(&self) -> Instant {
+    pub fn received_at(&self) -> Instant {
         self.last
     }
 
     /// Looks at one character; leaves it where it is if what came before must be told first.
-    fn step(&mut self, byte: u8) -> Step {
+    fn step(&mut self, byte: u8) -> AsciiState {
         if byte == b':' && !self.body.is_empty() {
             let why = match std::mem::take(&mut self.inside) {
                 true => NoiseCause::Unfinished,
                 false => NoiseCause::OutsideFrame,
             };
-            return Step::Noise(why);
+            return AsciiState::Noise(why);
         }
         self.looked += 1;
         match byte {
@@ -92,7 +92,7 @@ impl Ascii {
             b'\n' if self.inside && self.body.last() == Some(&b'\r') => {
                 self.body.pop();
                 self.inside = false;
-                return Step::Whole;
+                return AsciiState::Whole;
             }
             // The line ends of a frame that was not: silent, or every answer would be followed by noise.
             b'\r' | b'\n' if !self.inside && self.body.is_empty() => {}
@@ -100,23 +100,23 @@ impl Ascii {
         }
         if self.body.len() >= ascii::MAX {
             self.inside = false;
-            return Step::Noise(NoiseCause::TooLong);
+            return AsciiState::Noise(NoiseCause::TooLong);
         }
-        Step::More
+        AsciiState::More
     }
 
-    fn whole(&mut self, units: &Units) -> Heard<'_> {
+    fn whole(&mut self, units: &Units) -> LineEvent<'_> {
         self.given = true;
         match ascii::decode(&self.body, &mut self.decoded) {
-            Err(why) => Heard::BadAscii { bytes: &self.body, why },
-            Ok(adu) if units.has(adu.unit) => Heard::Request(adu),
+            Err(why) => LineEvent::BadAscii { bytes: &self.body, why },
+            Ok(adu) if units.has(adu.unit) => LineEvent::Request(adu),
             // Colons leave no doubt where a frame begins, so it does not matter who sent it.
-            Ok(adu) => Heard::Foreign(Foreign::Request(adu)),
+            Ok(adu) => LineEvent::Foreign(Foreign::Request(adu)),
         }
     }
 
-    fn noise(&mut self, why: NoiseCause) -> Heard<'_> {
+    fn noise(&mut self, why: NoiseCause) -> LineEvent<'_> {
         self.given = true;
-        Heard::Noise { bytes: &self.body, len: self.body.len(), why }
+        LineEvent::Noise { bytes: &self.body, len: self.body.len(), why }
     }
 }

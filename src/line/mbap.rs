@@ -1,6 +1,6 @@
 //! MBAP framing: the length field says all. A stream that lies is lost, since nothing marks a beginning.
 
-use super::{Foreign, Heard, Units};
+use super::{Foreign, LineEvent, Units};
 use crate::wire::mbap::{self, BadHeader};
 
 #[derive(Debug, Default)]
@@ -28,7 +28,7 @@ impl Mbap {
         }
     }
 
-    pub fn next(&mut self, units: &Units) -> Option<Heard<'_>> {
+    pub fn next(&mut self, units: &Units) -> Option<LineEvent<'_>> {
         self.discard_taken();
         if self.lost.is_some() {
             return None;
@@ -38,7 +38,7 @@ impl Mbap {
             Err(why) => {
                 self.lost = Some(why);
                 self.bytes.clear();
-                return Some(Heard::Lost(why));
+                return Some(LineEvent::Lost(why));
             }
         };
         let frame = self.bytes.get(..len)?;
@@ -46,8 +46,8 @@ impl Mbap {
         let (transaction, adu) = mbap::decode(frame);
         self.transaction = transaction;
         Some(match units.has(adu.unit) {
-            true => Heard::Request(adu),
-            false => Heard::Foreign(Foreign::Request(adu)),
+            true => LineEvent::Request(adu),
+            false => LineEvent::Foreign(Foreign::Request(adu)),
         })
     }
 

@@ -40,7 +40,7 @@ pub enum Framing {
 
 /// What a line made of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heard<'a> {
+pub enum LineEvent<'a> {
     /// A good frame for one of our units, or broadcast.
     Request(Adu<'a>),
     /// A good frame between a master and another unit.
@@ -136,7 +136,7 @@ impl Line {
     }
 
     /// The next thing heard, given that it is `now` and that `units` are ours.
-    pub fn next(&mut self, now: Instant, units: &Units) -> Option<Heard<'_>> {
+    pub fn next(&mut self, now: Instant, units: &Units) -> Option<LineEvent<'_>> {
         match &mut self.framer {
             Framer::Rtu(rtu) => rtu.next(now, units),
             Framer::Ascii(ascii) => ascii.next(now, units),
@@ -159,10 +159,10 @@ impl Line {
     }
 
     /// When bytes came last, where time counts.
-    pub fn heard_at(&self) -> Instant {
+    pub fn received_at(&self) -> Instant {
         match &self.framer {
-            Framer::Rtu(rtu) => rtu.heard_at(),
-            Framer::Ascii(ascii) => ascii.heard_at(),
+            Framer::Rtu(rtu) => rtu.received_at(),
+            Framer::Ascii(ascii) => ascii.received_at(),
             Framer::Mbap(_) => Instant::ZERO,
         }
     }

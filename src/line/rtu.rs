@@ -5,7 +5,7 @@
 //! line to end it, so whatever arrives before that is lost with it.
 
 use super::follow::Follower;
-use super::{Heard, Units};
+use super::{LineEvent, Units};
 use crate::time::{Duration, Instant};
 use crate::wire::NoiseCause;
 use crate::wire::rtu::{self, MAX, MIN};
@@ -58,7 +58,7 @@ impl Rtu {
         self.last = now;
     }
 
-    pub fn next(&mut self, now: Instant, units: &Units) -> Option<Heard<'_>> {
+    pub fn next(&mut self, now: Instant, units: &Units) -> Option<LineEvent<'_>> {
         self.discard_taken();
         let early = self.early_end(units);
         self.whole = early.is_none() && self.is_whole(units);
@@ -71,7 +71,7 @@ impl Rtu {
         self.taken = end.len;
         let spilt = if end.silent { std::mem::take(&mut self.spilt) } else { 0 };
         let bytes = &self.bytes[..end.len];
-        let noise = |why| Some(Heard::Noise { bytes, len: bytes.len() + spilt, why });
+        let noise = |why| Some(LineEvent::Noise { bytes, len: bytes.len() + spilt, why });
         if bytes.len() < MIN {
             return noise(NoiseCause::TooShort);
         }
@@ -79,12 +79,12 @@ impl Rtu {
             return noise(NoiseCause::TooLong);
         }
         match rtu::decode(bytes) {
-            Err(crc) => Some(Heard::BadCrc { bytes, crc }),
+            Err(crc) => Some(LineEvent::BadCrc { bytes, crc }),
             Ok(adu) if units.has(adu.unit) => {
                 self.follower.forget();
-                Some(Heard::Request(adu))
+                Some(LineEvent::Request(adu))
             }
-            Ok(adu) => Some(Heard::Foreign(self.follower.follow(bytes, adu))),
+            Ok(adu) => Some(LineEvent::Foreign(self.follower.follow(bytes, adu))),
         }
     }
 
@@ -101,7 +101,7 @@ impl Rtu {
         self.whole
     }
 
-    pub fn heard_at(&self) -> Instant {
+    pub fn received_at(&self) -> Instant {
         self.last
     }
 

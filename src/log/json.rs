@@ -4,10 +4,12 @@ use super::rows::{self, Item};
 use super::{no_effect, text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Outcome, Replanned, Transaction, Trouble, What};
+use crate::event::{
+    Change, DeviceFault, Event, FaultEffect, Outcome, Replanned, Transaction, What,
+};
 use crate::model::Row;
+use crate::vocabulary::{Named, Refusal};
 use crate::wire::hex::to_hex;
-use crate::words::{Refusal, Word};
 use serde_json::{Map, Value, json};
 
 /// One event of the line called `name` as a JSON object.
@@ -61,21 +63,21 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why)}))
         }
         What::Moved(mode) => ("line_moved", json!({"mode": mode.to_string()})),
-        What::Port { port, heard } => (
+        What::Port { port, understood } => (
             "port_settings",
             json!({
                 "baud": port.baud,
                 "stop_bits": port.stop_bits,
                 "line": port.line.to_string(),
                 "fits": port.fits(),
-                "heard": heard,
+                "heard": understood,
             }),
         ),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
-        What::Fault { rule, unit, mishap, hit } => {
+        What::Fault { rule, unit, effect, hit } => {
             let (name, kind) = bus.faults().told(*rule);
             let mut fields = json!({"rule": name, "kind": kind.name(), "unit": unit, "hit": hit});
-            merge(&mut fields, mishap_fields(*mishap));
+            merge(&mut fields, effect_fields(*effect));
             ("fault", fields)
         }
         What::Step(id) => {
@@ -105,12 +107,12 @@ fn transaction(drive: &Drive, it: &Transaction) -> (&'static str, Value) {
         "answer": to_hex(&it.answer),
     });
     let (kind, items) = match rows::request(drive, &it.request) {
-        rows::Told::Read(span) if it.refusal.is_none() => {
+        rows::DecodedRequest::Read(span) if it.refusal.is_none() => {
             ("read", rows::answer(drive, span, &it.answer))
         }
-        rows::Told::Read(_) => ("read", Vec::new()),
-        rows::Told::Write(_, items) => ("write", items),
-        rows::Told::Other => ("request", Vec::new()),
+        rows::DecodedRequest::Read(_) => ("read", Vec::new()),
+        rows::DecodedRequest::Write(_, items) => ("write", items),
+        rows::DecodedRequest::Other => ("request", Vec::new()),
     };
     let rows = items.iter().map(|item| item_fields(drive, *item));
     merge(&mut fields, json!({"rows": rows.collect::<Vec<_>>()}));
@@ -150,23 +152,23 @@ fn item_fields(drive: &Drive, item: Item) -> Value {
 }
 
 /// What was drawn or chosen; the kind says the rest.
-fn mishap_fields(mishap: Mishap) -> Value {
-    match mishap {
-        Mishap::BitsFlipped(bits) => json!({"bits": bits}),
-        Mishap::Truncated(bytes) | Mishap::Extra(bytes) | Mishap::Garbage(bytes) => {
+fn effect_fields(effect: FaultEffect) -> Value {
+    match effect {
+        FaultEffect::BitsFlipped(bits) => json!({"bits": bits}),
+        FaultEffect::Truncated(bytes) | FaultEffect::Extra(bytes) | FaultEffect::Garbage(bytes) => {
             json!({"bytes": bytes})
         }
-        Mishap::Delayed(by) => json!({"ms": by.as_secs_f64() * 1000.0}),
-        Mishap::Split { at, gap } => json!({"at": at, "gap_ms": gap.as_millis() as u64}),
-        Mishap::WrongUnit(to) | Mishap::WrongFunction(to) => json!({"to": to}),
-        Mishap::Exception(code) => json!({"code": code}),
-        Mishap::RequestLost
-        | Mishap::ReplyLost
-        | Mishap::BadChecksum
-        | Mishap::Late
-        | Mishap::Duplicated
-        | Mishap::Busy
-        | Mishap::Echoed => json!({}),
+        FaultEffect::Delayed(by) => json!({"ms": by.as_secs_f64() * 1000.0}),
+        FaultEffect::Split { at, gap } => json!({"at": at, "gap_ms": gap.as_millis() as u64}),
+        FaultEffect::WrongUnit(to) | FaultEffect::WrongFunction(to) => json!({"to": to}),
+        FaultEffect::Exception(code) => json!({"code": code}),
+        FaultEffect::RequestLost
+        | FaultEffect::ReplyLost
+        | FaultEffect::BadChecksum
+        | FaultEffect::Late
+        | FaultEffect::Duplicated
+        | FaultEffect::Busy
+        | FaultEffect::Echoed => json!({}),
     }
 }
 
@@ -250,18 +252,20 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             ("homing_lost", json!({"method": method, "why": why.name()}))
         }
         Change::NoEffect { order, why } => ("no_effect", no_effect::fields(drive, *order, *why)),
-        Change::Trouble { trouble, on } => {
-            let more = match trouble {
-                Trouble::Cause(cause) => json!({"trouble": "cause", "cause": cause.name()}),
-                Trouble::Blocked => json!({"trouble": "blocked"}),
-                Trouble::EncoderLost => json!({"trouble": "encoder_lost"}),
-                Trouble::Frozen => json!({"trouble": "frozen"}),
-                Trouble::Stuck(index) => {
-                    json!({"trouble": "stuck", "terminal": rows::terminal(drive, *index)})
+        Change::DeviceFault { device_fault, on } => {
+            let more = match device_fault {
+                DeviceFault::Cause(cause) => {
+                    json!({"device_fault": "cause", "cause": cause.name()})
+                }
+                DeviceFault::Blocked => json!({"device_fault": "blocked"}),
+                DeviceFault::EncoderLost => json!({"device_fault": "encoder_lost"}),
+                DeviceFault::Frozen => json!({"device_fault": "frozen"}),
+                DeviceFault::Stuck(index) => {
+                    json!({"device_fault": "stuck", "terminal": rows::terminal(drive, *index)})
                 }
             };
             merge(&mut fields, json!({"on": on}));
-            ("trouble", more)
+            ("device_fault", more)
         }
         Change::Bounces { index, times, every } => {
             let (terminal, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
@@ -284,7 +288,7 @@ fn replanned(what: &Replanned) -> Value {
         Replanned::StartSpeed { mrpm } => json!({"start_rpm": text::rpm(*mrpm)}),
         Replanned::Acceleration { mrpm_per_s } => json!({"acceleration_rpm_s": slope(mrpm_per_s)}),
         Replanned::Deceleration { mrpm_per_s } => json!({"deceleration_rpm_s": slope(mrpm_per_s)}),
-        Replanned::Way { by } => json!({"offset": by}),
+        Replanned::HomeOffset { by } => json!({"offset": by}),
         Replanned::TimeLimit { time } => {
             json!({"time_limit_s": time.map(|time| time.as_secs_f64())})
         }

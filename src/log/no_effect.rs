@@ -3,7 +3,7 @@
 use super::rows::{self, Item};
 use crate::drive::Drive;
 use crate::event::{Ignored, Ordered};
-use crate::words::{RowId, Word};
+use crate::vocabulary::{Named, RowId};
 
 /// `C01 bit 1 enable has no effect: C11 bit 1 is 0`.
 pub fn text(drive: &Drive, order: Ordered, why: Ignored) -> String {
@@ -79,7 +79,7 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
         Ignored::OtherAlarm(cause) => format!("the alarm is another one: {}", cause.about()),
         Ignored::Disabled { row, bit: Some(bit) } => format!("{} bit {bit} is 0", code(drive, row)),
         Ignored::Disabled { row, bit: None } => format!("{} is 0", code(drive, row)),
-        Ignored::Claimed { row } => format!("{} assigns the signal elsewhere", code(drive, row)),
+        Ignored::Overridden { row } => format!("{} assigns the signal elsewhere", code(drive, row)),
         Ignored::Nothing => "undefined".into(),
         Ignored::NotSimulated => "not simulated".into(),
         Ignored::StoredOnly => "stored; not simulated".into(),
@@ -130,7 +130,7 @@ pub fn fields(drive: &Drive, order: Ordered, why: Ignored) -> serde_json::Value 
         | Ignored::Unsupported { row, value }
         | Ignored::NoFunction { row, value } => json!({"by": id(row), "by_value": value}),
         Ignored::Disabled { row, bit } => json!({"by": id(row), "by_bit": bit}),
-        Ignored::Claimed { row } => json!({"by": id(row)}),
+        Ignored::Overridden { row } => json!({"by": id(row)}),
         Ignored::NotResettable(cause)
         | Ignored::CauseStands(cause)
         | Ignored::OtherAlarm(cause) => json!({"alarm": cause.name()}),
@@ -180,7 +180,7 @@ pub fn name(why: Ignored) -> &'static str {
         Ignored::CauseStands(_) => "cause_present",
         Ignored::OtherAlarm(_) => "other_alarm",
         Ignored::Disabled { .. } => "disabled",
-        Ignored::Claimed { .. } => "assigned_elsewhere",
+        Ignored::Overridden { .. } => "assigned_elsewhere",
         Ignored::Nothing => "undefined",
         Ignored::NotSimulated => "not_simulated",
         Ignored::StoredOnly => "stored_only",

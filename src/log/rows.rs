@@ -20,7 +20,7 @@ pub enum Item {
 
 /// What a request does, in rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Told {
+pub enum DecodedRequest {
     /// Read these addresses.
     Read(Span),
     /// Write these rows.
@@ -30,19 +30,19 @@ pub enum Told {
 }
 
 /// Reads a request PDU.
-pub fn request(drive: &Drive, pdu: &[u8]) -> Told {
+pub fn request(drive: &Drive, pdu: &[u8]) -> DecodedRequest {
     let parsed = Request::parse(pdu, drive.model().line.length_check)
         .or_else(|_| Request::parse(pdu, LengthCheck::CountOnly));
     match parsed {
-        Ok(Request::Read(span)) => Told::Read(span),
+        Ok(Request::Read(span)) => DecodedRequest::Read(span),
         Ok(Request::WriteOne { address, value }) => {
             let span = Span::one(address);
-            Told::Write(span, items(drive, span, |i| value.get(i)))
+            DecodedRequest::Write(span, items(drive, span, |i| value.get(i)))
         }
         Ok(Request::WriteMany { span, values }) => {
-            Told::Write(span, items(drive, span, |i| Words::get(values, i)))
+            DecodedRequest::Write(span, items(drive, span, |i| Words::get(values, i)))
         }
-        Err(_) => Told::Other,
+        Err(_) => DecodedRequest::Other,
     }
 }
 

@@ -3,11 +3,13 @@
 use super::{no_effect, rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{Change, Event, Mishap, Outcome, Replanned, Transaction, Trouble, What};
+use crate::event::{
+    Change, DeviceFault, Event, FaultEffect, Outcome, Replanned, Transaction, What,
+};
 use crate::serial::Mode;
 use crate::text::one_line;
+use crate::vocabulary::{Named, Then};
 use crate::wire::hex::to_hex;
-use crate::words::{Then, Word};
 
 /// Rows of one transaction that are told; the rest is counted.
 const ROWS_TOLD: usize = 6;
@@ -60,8 +62,8 @@ fn what(what: &What, bus: &Bus) -> String {
             format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(head))
         }
         What::Moved(mode) => format!("the line is {mode} from now on"),
-        What::Port { port, heard } => {
-            let (baud, stop_bits, why) = (port.baud, port.stop_bits, why::port(*port, *heard));
+        What::Port { port, understood } => {
+            let (baud, stop_bits, why) = (port.baud, port.stop_bits, why::port(*port, *understood));
             let bits = if stop_bits == 1 { "bit" } else { "bits" };
             format!(
                 "the master's port is set to {baud} baud and {stop_bits} stop {bits}, the line to {}: {why}",
@@ -69,9 +71,9 @@ fn what(what: &What, bus: &Bus) -> String {
             )
         }
         What::Lost(why) => format!("stream closed, {}", why::header(*why)),
-        What::Fault { rule, unit, mishap, hit } => {
+        What::Fault { rule, unit, effect, hit } => {
             let (name, _) = bus.faults().told(*rule);
-            format!("fault {name}: {} (hit {hit})", mishap_text(*unit, *mishap))
+            format!("fault {name}: {} (hit {hit})", effect_text(*unit, *effect))
         }
         What::Step(id) => {
             let remark = bus.remark(*id);
@@ -101,7 +103,7 @@ fn transaction(drive: &Drive, it: &Transaction) -> String {
         return format!("unit {unit} {asked}: refused, {why} -> exception {:02X}", refusal.code);
     }
     match rows::request(drive, &it.request) {
-        rows::Told::Read(span) => {
+        rows::DecodedRequest::Read(span) => {
             let items = rows::answer(drive, span, &it.answer);
             format!("unit {unit} read {}", list(drive, &items, rows::text))
         }
@@ -115,12 +117,12 @@ type Tell = fn(&Drive, rows::Item) -> String;
 /// What a request asks for, without an answer.
 fn asked(drive: &Drive, request: &[u8], tell: Tell) -> String {
     match rows::request(drive, request) {
-        rows::Told::Read(span) => match span.count() {
+        rows::DecodedRequest::Read(span) => match span.count() {
             1 => format!("read 0x{:04X}", span.start()),
             count => format!("read 0x{:04X} x {count}", span.start()),
         },
-        rows::Told::Write(_, items) => format!("write {}", list(drive, &items, tell)),
-        rows::Told::Other => {
+        rows::DecodedRequest::Write(_, items) => format!("write {}", list(drive, &items, tell)),
+        rows::DecodedRequest::Other => {
             format!("function {}", to_hex(request))
         }
     }
@@ -153,29 +155,31 @@ fn who_is_here(unit: u8, bus: &Bus) -> String {
     }
 }
 
-fn mishap_text(unit: u8, mishap: Mishap) -> String {
+fn effect_text(unit: u8, effect: FaultEffect) -> String {
     let reply = format!("the reply of unit {unit}");
-    match mishap {
-        Mishap::RequestLost => format!("the request to unit {unit} was lost"),
-        Mishap::ReplyLost => format!("{reply} was lost"),
-        Mishap::BadChecksum => format!("{reply} left with a wrong checksum"),
-        Mishap::BitsFlipped(bits) => format!("{bits} bit(s) of {reply} were turned over"),
-        Mishap::Truncated(bytes) => format!("{bytes} byte(s) of {reply} were cut off"),
-        Mishap::Extra(bytes) => format!("{bytes} byte(s) followed {reply}"),
-        Mishap::Garbage(bytes) => format!("{bytes} byte(s) came before {reply}"),
-        Mishap::Delayed(by) => format!("{reply} leaves {} ms later", by.as_secs_f64() * 1000.0),
-        Mishap::Late => format!("{reply} waits for the next request"),
-        Mishap::Duplicated => format!("{reply} left twice"),
-        Mishap::Split { gap, .. } => {
+    match effect {
+        FaultEffect::RequestLost => format!("the request to unit {unit} was lost"),
+        FaultEffect::ReplyLost => format!("{reply} was lost"),
+        FaultEffect::BadChecksum => format!("{reply} left with a wrong checksum"),
+        FaultEffect::BitsFlipped(bits) => format!("{bits} bit(s) of {reply} were turned over"),
+        FaultEffect::Truncated(bytes) => format!("{bytes} byte(s) of {reply} were cut off"),
+        FaultEffect::Extra(bytes) => format!("{bytes} byte(s) followed {reply}"),
+        FaultEffect::Garbage(bytes) => format!("{bytes} byte(s) came before {reply}"),
+        FaultEffect::Delayed(by) => {
+            format!("{reply} leaves {} ms later", by.as_secs_f64() * 1000.0)
+        }
+        FaultEffect::Late => format!("{reply} waits for the next request"),
+        FaultEffect::Duplicated => format!("{reply} left twice"),
+        FaultEffect::Split { gap, .. } => {
             format!("{reply} leaves in pieces, {} ms apart", gap.as_millis())
         }
-        Mishap::WrongUnit(other) => format!("{reply} named unit {other}"),
-        Mishap::WrongFunction(other) => format!("{reply} named function {other:02X}"),
-        Mishap::Exception(code) => {
+        FaultEffect::WrongUnit(other) => format!("{reply} named unit {other}"),
+        FaultEffect::WrongFunction(other) => format!("{reply} named function {other:02X}"),
+        FaultEffect::Exception(code) => {
             format!("exception {code:02X} answered for unit {unit}, nothing was executed")
         }
-        Mishap::Busy => format!("unit {unit} was busy, nothing was executed"),
-        Mishap::Echoed => format!("the request to unit {unit} came back"),
+        FaultEffect::Busy => format!("unit {unit} was busy, nothing was executed"),
+        FaultEffect::Echoed => format!("the request to unit {unit} came back"),
     }
 }
 
@@ -276,7 +280,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             format!("homing method {method} ended without an origin: {}", why.about())
         }
         Change::NoEffect { order, why } => no_effect::text(drive, *order, *why),
-        Change::Trouble { trouble, on } => trouble_text(drive, *trouble, *on),
+        Change::DeviceFault { device_fault, on } => device_fault_text(drive, *device_fault, *on),
         Change::Bounces { index, times, every } => {
             let (name, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
             format!("terminal {name} bounces {times} times, {every} ms from edge to edge")
@@ -287,20 +291,20 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
     }
 }
 
-fn trouble_text(drive: &Drive, trouble: Trouble, on: bool) -> String {
-    match (trouble, on) {
-        (Trouble::Cause(cause), true) => format!("suffers from now on: {}", cause.about()),
-        (Trouble::Cause(cause), false) => format!("suffers no longer: {}", cause.about()),
-        (Trouble::Blocked, true) => "is blocked where it stands".into(),
-        (Trouble::Blocked, false) => "is free again".into(),
-        (Trouble::EncoderLost, true) => "has lost its encoder".into(),
-        (Trouble::EncoderLost, false) => "has its encoder again".into(),
-        (Trouble::Frozen, true) => "sees its position frozen".into(),
-        (Trouble::Frozen, false) => "sees its position again".into(),
-        (Trouble::Stuck(index), true) => {
+fn device_fault_text(drive: &Drive, device_fault: DeviceFault, on: bool) -> String {
+    match (device_fault, on) {
+        (DeviceFault::Cause(cause), true) => format!("suffers from now on: {}", cause.about()),
+        (DeviceFault::Cause(cause), false) => format!("suffers no longer: {}", cause.about()),
+        (DeviceFault::Blocked, true) => "is blocked where it stands".into(),
+        (DeviceFault::Blocked, false) => "is free again".into(),
+        (DeviceFault::EncoderLost, true) => "has lost its encoder".into(),
+        (DeviceFault::EncoderLost, false) => "has its encoder again".into(),
+        (DeviceFault::Frozen, true) => "sees its position frozen".into(),
+        (DeviceFault::Frozen, false) => "sees its position again".into(),
+        (DeviceFault::Stuck(index), true) => {
             format!("terminal {} sticks", rows::terminal(drive, index))
         }
-        (Trouble::Stuck(index), false) => {
+        (DeviceFault::Stuck(index), false) => {
             format!("terminal {} sticks no longer", rows::terminal(drive, index))
         }
     }
@@ -319,7 +323,7 @@ fn replanned(what: &Replanned) -> String {
         Replanned::StartSpeed { mrpm } => format!("start speed now {} rpm", rpm(*mrpm)),
         Replanned::Acceleration { mrpm_per_s } => format!("acceleration now {}", slope(mrpm_per_s)),
         Replanned::Deceleration { mrpm_per_s } => format!("deceleration now {}", slope(mrpm_per_s)),
-        Replanned::Way { by } => format!("offset from the origin now {by}"),
+        Replanned::HomeOffset { by } => format!("offset from the origin now {by}"),
         Replanned::TimeLimit { time: Some(time) } => {
             format!("homing time limit now {} s", time.as_secs_f64())
         }

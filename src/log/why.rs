@@ -3,10 +3,10 @@
 use super::rows::label;
 use crate::drive::Drive;
 use crate::event::PortSettings;
+use crate::vocabulary::{Cause, Condition, Detail, Named, Refusal, SignalEdge, Until};
 use crate::wire::NoiseCause;
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
-use crate::words::{Cause, Condition, Detail, Edge, Refusal, Until, Word};
 
 /// `range 0..6000`, `0x1234 is not mapped`.
 pub fn refusal(drive: &Drive, refusal: &Refusal) -> String {
@@ -44,7 +44,7 @@ pub fn chain_step(why: Option<Condition>) -> &'static str {
     match why {
         None => "in position",
         Some(Condition::Delay) => "its time is over",
-        Some(Condition::Step) => "`segment_step` has risen",
+        Some(Condition::HomingStep) => "`segment_step` has risen",
         Some(Condition::Position) => "the position is reached",
     }
 }
@@ -90,7 +90,7 @@ pub fn header(why: BadHeader) -> String {
 /// What a homing step waits for.
 pub fn until(until: Until) -> String {
     let edge =
-        |edge: Edge| format!("{} {}", edge.signal.name(), if edge.on { "on" } else { "off" });
+        |edge: SignalEdge| format!("{} {}", edge.signal.name(), if edge.on { "on" } else { "off" });
     match until {
         Until::Edge(it) => edge(it),
         Until::Index(None) => "an index pulse".into(),

@@ -1,12 +1,12 @@
 //! Folded rows unfolded: repeats and fills become one list of rows, each with its path in the file.
 
-use super::raw::{KEYS, RawFill, RawRepeat, RawRow, RawSim, RawType};
+use super::raw::{KEYS, RawFill, RawRow, RawRowRepeat, RawSim, RawType};
 use crate::problem::{Path, Problem, bounds, section};
 use serde_yaml::Value;
 use std::collections::BTreeMap;
 
 /// A row as it is written, with the key it got and the place it came from.
-pub(super) struct Entry {
+pub(super) struct ExpandedRow {
     pub id: String,
     pub path: Path,
     pub row: RawRow,
@@ -17,18 +17,18 @@ const ROWS_MAX: usize = 60_000;
 
 /// All rows of `file`, in the order of their keys, and the keys of those that can't be read: they are
 /// problems and left out.
-pub(super) fn expand(file: &Value, problems: &mut Vec<Problem>) -> (Vec<Entry>, Vec<String>) {
+pub(super) fn expand(file: &Value, problems: &mut Vec<Problem>) -> (Vec<ExpandedRow>, Vec<String>) {
     let (mut entries, mut lost) = (Vec::new(), Vec::new());
     let path = Path::root().key("registers");
     for (id, path, value) in section::entries(file.get("registers"), &path, problems) {
         match section::read::<RawRow>(value, &path, KEYS, problems) {
-            Some(row) => entries.push(Entry { id, path, row }),
+            Some(row) => entries.push(ExpandedRow { id, path, row }),
             None => lost.push(id),
         }
     }
     let path = Path::root().key("repeats");
     for (_, path, value) in section::entries(file.get("repeats"), &path, problems) {
-        if let Some(repeat) = section::read::<RawRepeat>(value, &path, KEYS, problems) {
+        if let Some(repeat) = section::read::<RawRowRepeat>(value, &path, KEYS, problems) {
             unroll(&repeat, &path, &mut entries, problems);
         }
     }
@@ -41,7 +41,12 @@ pub(super) fn expand(file: &Value, problems: &mut Vec<Problem>) -> (Vec<Entry>, 
     (entries, lost)
 }
 
-fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &mut Vec<Problem>) {
+fn unroll(
+    repeat: &RawRowRepeat,
+    path: &Path,
+    entries: &mut Vec<ExpandedRow>,
+    problems: &mut Vec<Problem>,
+) {
     let [first, last] = repeat.n;
     if first > last {
         let what = format!("copies {first} to {last} are none");
@@ -78,7 +83,7 @@ fn unroll(repeat: &RawRepeat, path: &Path, entries: &mut Vec<Entry>, problems: &
             row.name = number(&row.name, n);
             row.zh = row.zh.map(|zh| number(&zh, n));
             row.note = row.note.map(|note| number(&note, n));
-            entries.push(Entry { id: number(key, n), path: path.clone(), row });
+            entries.push(ExpandedRow { id: number(key, n), path: path.clone(), row });
         }
     }
 }
@@ -91,7 +96,7 @@ fn text_size(row: &RawRow) -> usize {
     texts.map(String::len).sum()
 }
 
-fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Vec<Problem>) {
+fn fill(area: &RawFill, path: &Path, entries: &mut Vec<ExpandedRow>, problems: &mut Vec<Problem>) {
     let [first, last] = area.span;
     if first > last {
         let what = format!("addresses 0x{first:04X} to 0x{last:04X} are none");
@@ -111,7 +116,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
         return problems.push(Problem::value(path.key("id"), what).advise("put {n} into it"));
     }
     let mut taken = vec![false; 0x1_0000];
-    for Entry { row, .. } in entries.iter() {
+    for ExpandedRow { row, .. } in entries.iter() {
         taken[usize::from(row.at)] = true;
         if matches!(row.kind, RawType::U32 | RawType::I32) {
             taken[usize::from(row.at.saturating_add(1))] = true;
@@ -141,7 +146,7 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<Entry>, problems: &mut Ve
             assumed: area.assumed.clone(),
             sim: Some(RawSim::None),
         };
-        entries.push(Entry { id: number(&area.id, at), path: path.clone(), row });
+        entries.push(ExpandedRow { id: number(&area.id, at), path: path.clone(), row });
     }
 }
 

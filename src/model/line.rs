@@ -9,9 +9,9 @@ use super::{Access, RowId, duration};
 use crate::problem::{Path, Problem, suggest};
 use crate::serial::{Format, Mode};
 use crate::time::Duration;
+use crate::vocabulary::{Cause, Named};
 use crate::wire::LengthCheck;
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
-use crate::words::{Cause, Word};
 use std::collections::BTreeMap;
 
 /// What a drive may take to reply.
@@ -115,7 +115,7 @@ pub struct WireFormat {
 
 /// Which word of a pair stands at the lower address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub enum RegisterOrder {
     /// The high one.
     HighFirst,
     /// The low one.
@@ -126,13 +126,13 @@ pub enum Order {
 #[derive(Debug)]
 pub enum WordOrder {
     /// Always the same.
-    Fixed(Order),
+    Fixed(RegisterOrder),
     /// By value of a row.
     Row {
         /// The row.
         row: RowId,
-        /// Order by value.
-        codes: BTreeMap<i64, Order>,
+        /// Register order by value.
+        codes: BTreeMap<i64, RegisterOrder>,
     },
 }
 

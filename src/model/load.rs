@@ -14,7 +14,7 @@ pub type Choices = BTreeMap<String, String>;
 /// Compiles `text` with `choices`.
 ///
 /// # Errors
-/// Every problem of the file with the chosen options laid over it, and wishes for options that it does not have.
+/// Every problem of the file with the chosen options laid over it, and settings for options that it does not have.
 pub fn load(text: &str, choices: &Choices) -> Result<Model, Vec<Problem>> {
     let (file, mut problems) = section::tree(text)?;
     let options = read_options(&file, &mut problems);
@@ -49,9 +49,9 @@ pub fn check(text: &str) -> Vec<Problem> {
     let mut problems = Vec::new();
     for option in &model.options {
         for choice in option.choices.iter().filter(|choice| **choice != option.default) {
-            let wish = Choices::from([(option.name.clone(), choice.clone())]);
+            let override_key = Choices::from([(option.name.clone(), choice.clone())]);
             let fragment = Path::root().key("options").key(&option.name).key("choices").key(choice);
-            for mut problem in load(text, &wish).err().unwrap_or_default() {
+            for mut problem in load(text, &override_key).err().unwrap_or_default() {
                 problem.path = fragment.join(&problem.path);
                 problems.push(problem);
             }

@@ -16,17 +16,19 @@ mod rows;
 mod times;
 mod wiring;
 
-pub use crate::words::RowId;
-pub use line::{Coded, LineRules, LongAccess, Order, Refuse, UnitRule, WireFormat, WordOrder};
+pub use crate::vocabulary::RowId;
+pub use line::{
+    Coded, LineRules, LongAccess, Refuse, RegisterOrder, UnitRule, WireFormat, WordOrder,
+};
 pub use load::{Choices, check, load};
 pub use options::OptionInfo;
-pub use row::{Access, Applies, Kind, Layer, Located, Map, Row, Window};
+pub use row::{Access, Applies, Layer, Located, Map, Row, RowKind, Window};
 pub use times::duration;
 pub use wiring::{
-    Alarm, AlarmStop, Axis, ChainRules, Choice, Claim, Commands, Counts, Finish, Gear, Hold,
-    Homing, InputWords, Interrupt, Limits, Link, Monitor, Number, OutputWords, PositionSegment,
-    PositionSegments, Reaction, Segments, Servo, SettingRow, Shown, Shows, Terminals, Triggers,
-    VelocitySegments, Wiring,
+    Alarm, AlarmStop, AxisWiring, BitOverride, ChainLink, ChainRules, Choice, CommandRows, Counts,
+    Finish, Gear, HoldTime, HomingRules, InputWords, InterruptWiring, Limits, Monitor, Number,
+    OutputWords, PositionSegment, PositionSegments, Reaction, Segments, ServoWiring, SettingRow,
+    Shown, Shows, Terminals, Triggers, VelocitySegments, Wiring,
 };
 
 /// One drive of one vendor, as data.
@@ -66,7 +68,7 @@ pub struct Station {
 impl Model {
     /// The row that a newcomer would read first: where the axis stands, or else any row that may be read.
     pub fn showcase(&self) -> Option<&Row> {
-        let position = Shows::Quantity(crate::words::Quantity::PositionActual);
+        let position = Shows::Quantity(crate::vocabulary::Quantity::PositionActual);
         let found = self.row_showing(&position).map(|id| self.map.row(id));
         found.or_else(|| {
             let mut rows = self.map.rows().map(|(_, row)| row);

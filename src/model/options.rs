@@ -35,10 +35,10 @@ impl OptionInfo {
     }
 }
 
-/// The choice in force for each option, or what is wrong with the options and the wishes.
+/// The choice in force for each option, or what is wrong with the options and the settings.
 pub(super) fn choose(
     options: &BTreeMap<String, RawOption>,
-    wishes: &BTreeMap<String, String>,
+    override_keys: &BTreeMap<String, String>,
     problems: &mut Vec<Problem>,
 ) -> BTreeMap<String, String> {
     let choices = options.values().map(|option| option.choices.len()).sum();
@@ -65,7 +65,7 @@ pub(super) fn choose(
         }
         chosen.insert(name.clone(), option.default.clone());
     }
-    for (name, choice) in wishes {
+    for (name, choice) in override_keys {
         let path = Path::root().key("options").key(name);
         let Some(option) = options.get(name) else {
             let what = format!("no option `{name}`");

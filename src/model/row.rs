@@ -1,8 +1,8 @@
 //! Compiled rows and the map that finds them by address.
 
 use crate::units::{Unit, parse_integer};
+use crate::vocabulary::RowId;
 use crate::wire::Span;
-use crate::words::RowId;
 use std::collections::BTreeMap;
 
 /// One register, or one register pair.
@@ -13,7 +13,7 @@ pub struct Row {
     /// Address of its first word.
     pub at: u16,
     /// Width and sign.
-    pub kind: Kind,
+    pub kind: RowKind,
     /// Values that may be written, in spans.
     pub spans: Vec<(i64, i64)>,
     /// Are they the values of `values`, for want of a range?
@@ -37,7 +37,7 @@ pub struct Row {
     /// Returns to 0 once it has acted.
     pub clears: bool,
     /// Word order of its own.
-    pub order: Option<super::Order>,
+    pub order: Option<super::RegisterOrder>,
     /// English name.
     pub name: String,
     /// Name as printed.
@@ -60,7 +60,7 @@ pub struct Row {
 
 /// Width and sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum RowKind {
     /// One word, unsigned.
     U16,
     /// One word, signed.
@@ -284,7 +284,7 @@ pub(super) fn span_text(spans: &[(i64, i64)]) -> String {
     spans.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-impl Kind {
+impl RowKind {
     /// Words that it takes.
     pub fn words(self) -> u16 {
         match self {
@@ -344,16 +344,18 @@ mod tests {
 
     #[test]
     fn values_and_bits() {
-        assert_eq!(Kind::I16.value(0xFFFC), -4);
-        assert_eq!(Kind::I16.raw(-4), 0xFFFC);
-        assert_eq!(Kind::I32.value(0xFFFF_FFF6), -10);
-        assert_eq!(Kind::U16.raw(70_000), 0xFFFF);
-        assert_eq!(Kind::I16.raw(-70_000), 0x8000);
-        assert_eq!(Kind::I32.wrapped(0x8000_0000), 0x8000_0000);
-        assert_eq!(Kind::I16.wrapped(-70_000), 0xEE90);
-        assert_eq!(Kind::I16.of_bits(0xFFFC), Some(-4));
-        assert_eq!(Kind::I32.of_bits(0xFFFF_FFFC), Some(-4));
-        for (kind, bits) in [(Kind::U16, 0x1_0000), (Kind::I16, 99_999), (Kind::U32, 1 << 32)] {
+        assert_eq!(RowKind::I16.value(0xFFFC), -4);
+        assert_eq!(RowKind::I16.raw(-4), 0xFFFC);
+        assert_eq!(RowKind::I32.value(0xFFFF_FFF6), -10);
+        assert_eq!(RowKind::U16.raw(70_000), 0xFFFF);
+        assert_eq!(RowKind::I16.raw(-70_000), 0x8000);
+        assert_eq!(RowKind::I32.wrapped(0x8000_0000), 0x8000_0000);
+        assert_eq!(RowKind::I16.wrapped(-70_000), 0xEE90);
+        assert_eq!(RowKind::I16.of_bits(0xFFFC), Some(-4));
+        assert_eq!(RowKind::I32.of_bits(0xFFFF_FFFC), Some(-4));
+        for (kind, bits) in
+            [(RowKind::U16, 0x1_0000), (RowKind::I16, 99_999), (RowKind::U32, 1 << 32)]
+        {
             assert_eq!(kind.of_bits(bits), None);
         }
     }

@@ -1,11 +1,11 @@
 //! Compiles rows and windows into a [`Map`], and finds what is wrong with them.
 
-use super::expand::Entry;
+use super::expand::ExpandedRow;
 use super::raw::{
     RawAccess, RawApplies, RawLayer, RawLock, RawOrder, RawRange, RawType, RawWindow,
 };
-use super::row::{Access, Applies, Kind, Layer, Map, Row, Window, span_text};
-use super::{Order, RowId};
+use super::row::{Access, Applies, Layer, Map, Row, RowKind, Window, span_text};
+use super::{RegisterOrder, RowId};
 use crate::problem::{Path, Problem, suggest};
 use crate::units::Unit;
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ impl Compiled {
 }
 
 pub(super) fn compile(
-    entries: Vec<Entry>,
+    entries: Vec<ExpandedRow>,
     mut lost: Vec<String>,
     windows: &BTreeMap<String, RawWindow>,
     problems: &mut Vec<Problem>,
@@ -58,15 +58,15 @@ pub(super) fn compile(
 
 /// Leaves out rows whose addresses or names others have taken: one problem each.
 fn without_overlaps(
-    entries: Vec<Entry>,
+    entries: Vec<ExpandedRow>,
     lost: &mut Vec<String>,
     problems: &mut Vec<Problem>,
-) -> Vec<Entry> {
+) -> Vec<ExpandedRow> {
     let mut owner: BTreeMap<u16, String> = BTreeMap::new();
     let mut names: BTreeMap<String, u16> = BTreeMap::new();
     entries
         .into_iter()
-        .filter(|Entry { id, path, row }| {
+        .filter(|ExpandedRow { id, path, row }| {
             let words = kind(row.kind).words();
             let last = row.at.checked_add(words - 1);
             let taken =
@@ -92,7 +92,7 @@ fn without_overlaps(
         .collect()
 }
 
-fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row {
+fn row(ExpandedRow { id, path, row: raw }: &ExpandedRow, problems: &mut Vec<Problem>) -> Row {
     let kind = kind(raw.kind);
     let listed = raw.range.is_none() && !raw.values.is_empty() && raw.access != RawAccess::R;
     let spans = match listed {
@@ -179,7 +179,7 @@ fn row(Entry { id, path, row: raw }: &Entry, problems: &mut Vec<Problem>) -> Row
 /// A key that could change nothing on this row is a mistake, not a decoration.
 fn reject_keys_without_effect(
     raw: &super::raw::RawRow,
-    kind: Kind,
+    kind: RowKind,
     path: &Path,
     problems: &mut Vec<Problem>,
 ) {
@@ -213,7 +213,7 @@ fn reject_keys_without_effect(
 /// A value with a meaning that no write may carry is a slip of the list or of the range.
 fn reject_values_never_held(
     raw: &super::raw::RawRow,
-    kind: Kind,
+    kind: RowKind,
     spans: &[(i64, i64)],
     path: &Path,
     problems: &mut Vec<Problem>,
@@ -246,7 +246,7 @@ fn one_by_one(values: impl Iterator<Item = i64>) -> Vec<(i64, i64)> {
 
 fn spans(
     range: &Option<RawRange>,
-    kind: Kind,
+    kind: RowKind,
     path: &Path,
     problems: &mut Vec<Problem>,
 ) -> Vec<(i64, i64)> {
@@ -288,9 +288,9 @@ fn whole_pairs(rows: &[Row], windows: &[Window], problems: &mut Vec<Problem>) {
 }
 
 /// Where every window saves what it writes, no row needs to.
-fn autosaves(entries: &[Entry], windows: &[Window], problems: &mut Vec<Problem>) {
+fn autosaves(entries: &[ExpandedRow], windows: &[Window], problems: &mut Vec<Problem>) {
     let mut told: Vec<&Path> = Vec::new();
-    for Entry { path, row, .. } in entries.iter().filter(|entry| entry.row.autosave) {
+    for ExpandedRow { path, row, .. } in entries.iter().filter(|entry| entry.row.autosave) {
         let saves = |window: &Window| {
             window.layer == Layer::RamAndStore || !(window.span.0..=window.span.1).contains(&row.at)
         };
@@ -348,18 +348,18 @@ fn compile_windows(
     compiled
 }
 
-fn kind(raw: RawType) -> Kind {
+fn kind(raw: RawType) -> RowKind {
     match raw {
-        RawType::U16 => Kind::U16,
-        RawType::I16 => Kind::I16,
-        RawType::U32 => Kind::U32,
-        RawType::I32 => Kind::I32,
+        RawType::U16 => RowKind::U16,
+        RawType::I16 => RowKind::I16,
+        RawType::U32 => RowKind::U32,
+        RawType::I32 => RowKind::I32,
     }
 }
 
-pub(super) fn order(raw: RawOrder) -> Order {
+pub(super) fn order(raw: RawOrder) -> RegisterOrder {
     match raw {
-        RawOrder::HighWordFirst => Order::HighFirst,
-        RawOrder::LowWordFirst => Order::LowFirst,
+        RawOrder::HighWordFirst => RegisterOrder::HighFirst,
+        RawOrder::LowWordFirst => RegisterOrder::LowFirst,
     }
 }

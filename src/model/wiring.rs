@@ -2,11 +2,10 @@
 
 mod alarms;
 mod axis;
+mod bit_overrides;
 mod chain;
 mod choice;
-mod claims;
 mod compile;
-mod counts;
 mod homing;
 mod interrupt;
 mod limits;
@@ -14,29 +13,30 @@ mod names;
 mod not_simulated;
 mod orders;
 mod quantities;
+mod queries;
 mod segment_rows;
 mod segment_signals;
 mod segments;
+mod settings_taken;
 mod thresholds;
-mod used;
+mod unused_rows;
 mod user;
-mod wired;
 
-pub use chain::{ChainRules, Link};
+pub use chain::{ChainLink, ChainRules};
 pub use choice::{Choice, Digit};
 pub(super) use compile::compile;
-pub use homing::{Finish, Homing};
-pub use interrupt::Interrupt;
+pub use homing::{Finish, HomingRules};
+pub use interrupt::InterruptWiring;
 pub use limits::Limits;
 pub use not_simulated::NotSimulated;
 pub use segments::{PositionSegment, PositionSegments, Segments, VelocitySegments};
-pub(super) use used::check_inert;
+pub(super) use unused_rows::check_inert;
 
 use super::RowId;
 use super::line::Coded;
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::words::{
+use crate::vocabulary::{
     Action, AlarmCause, InhibitRule, Input, Modifier, Output, Quantity, Setting, Taken, Threshold,
 };
 
@@ -52,9 +52,9 @@ pub struct Wiring {
     /// Rows whose bits are input signals.
     pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
     /// What takes the signals of such bits away.
-    pub claims: Vec<Claim>,
+    pub bit_overrides: Vec<BitOverride>,
     /// Rows in which a written value triggers an action.
-    pub commands: Vec<Commands>,
+    pub commands: Vec<CommandRows>,
     /// Rows whose bits trigger actions.
     pub triggers: Vec<Triggers>,
     /// Output terminals with the signal that each function number shows.
@@ -72,11 +72,11 @@ pub struct Wiring {
     /// What a write to a row sets off, by row.
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.
-    pub servo: Servo,
+    pub servo: ServoWiring,
     /// The axis.
-    pub axis: Axis,
+    pub axis: AxisWiring,
     /// How the axis looks for its origin.
-    pub homing: Option<Homing>,
+    pub homing: Option<HomingRules>,
     /// What its limits do.
     pub limits: Limits,
     /// Alarms by cause.
@@ -84,7 +84,7 @@ pub struct Wiring {
     /// Rows with the numbers of the alarms that were raised, newest first.
     pub alarm_history: Vec<RowId>,
     /// How long the master may be silent; `None` for ever.
-    pub timeout: Option<Hold>,
+    pub timeout: Option<HoldTime>,
 }
 
 /// What a row shows instead of what was written.
@@ -164,7 +164,7 @@ impl<S: Copy> Terminals<S> {
 
 /// A setting that takes the signal of a bit away, so that the bit does not act.
 #[derive(Debug)]
-pub struct Claim {
+pub struct BitOverride {
     /// The row with the bit.
     pub row: RowId,
     /// The bit.
@@ -183,12 +183,12 @@ pub struct InputWords {
     /// Position (16 times the word plus the bit) and signal.
     pub positions: Vec<(u16, Input)>,
     /// How long a write holds; `None` for ever.
-    pub hold: Option<Hold>,
+    pub hold: Option<HoldTime>,
 }
 
 /// How long one write of an input word holds, or how long the master may be silent.
 #[derive(Debug)]
-pub struct Hold {
+pub struct HoldTime {
     /// The row with the time.
     pub row: RowId,
     /// Its unit.
@@ -208,7 +208,7 @@ pub struct OutputWords {
 
 /// A row in which a written value triggers an action.
 #[derive(Debug)]
-pub struct Commands {
+pub struct CommandRows {
     /// The row.
     pub row: RowId,
     /// Action by value.
@@ -248,7 +248,7 @@ pub enum Reaction {
 
 /// When the drive is ready and what it does at power-on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Servo {
+pub struct ServoWiring {
     /// Time from power-on until ready.
     pub ready_after: Duration,
     /// Power stage on from the start.
@@ -257,7 +257,7 @@ pub struct Servo {
 
 /// The axis that the drive moves.
 #[derive(Debug)]
-pub struct Axis {
+pub struct AxisWiring {
     /// Counts for one revolution.
     pub counts_per_rev: Counts,
     /// Increments of the encoder for one revolution, where rows count them.
@@ -281,7 +281,7 @@ pub struct Axis {
     /// Motions by number.
     pub segments: Segments,
     /// Interrupt positioning.
-    pub interrupt: Option<Interrupt>,
+    pub interrupt: Option<InterruptWiring>,
     /// What becomes of what the axis is behind a command that is inhibited, where the model says.
     pub inhibit: Option<Choice<InhibitRule>>,
 }
@@ -317,7 +317,7 @@ pub enum Counts {
     Row(RowId),
 }
 
-impl Default for Axis {
+impl Default for AxisWiring {
     /// Nothing moves it.
     fn default() -> Self {
         let coast = Duration::from_millis(200);
@@ -339,7 +339,7 @@ impl Default for Axis {
     }
 }
 
-impl Axis {
+impl AxisWiring {
     /// The settings of all motions, those of segments too.
     pub fn all_settings(&self) -> impl Iterator<Item = &SettingRow> {
         let interrupt = self.interrupt.iter().flat_map(|it| &it.settings);

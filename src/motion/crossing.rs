@@ -4,7 +4,7 @@
 //! before it is not. So whoever looks at the state when the deadline fires sees what the deadline says.
 
 use super::trajectory::Segment;
-use super::{State, Trajectory, Way, search};
+use super::{CrossingDirection, State, Trajectory, search};
 use crate::time::Instant;
 
 impl Trajectory {
@@ -12,7 +12,12 @@ impl Trajectory {
     ///
     /// A mark belongs to its upper side: coming to rest on it from below passes it, coming to rest on
     /// it from above does not, and leaving it downwards does.
-    pub fn crossing(&self, position: f64, way: Way, after: Instant) -> Option<Instant> {
+    pub fn crossing(
+        &self,
+        position: f64,
+        way: CrossingDirection,
+        after: Instant,
+    ) -> Option<Instant> {
         self.first(
             after,
             |it| way.is_past(it.position, position),
@@ -67,7 +72,7 @@ mod tests {
     #[test]
     fn solves_what_paper_solves() {
         let of = Trajectory::to_speed(Instant::ZERO, State::at_rest(0.0), 1000.0, 5000.0, 5000.0);
-        let at = |position| of.crossing(position, Way::Rising, Instant::ZERO);
+        let at = |position| of.crossing(position, CrossingDirection::Rising, Instant::ZERO);
         assert_eq!(at(25.0).map(Instant::as_nanos).map(|it| it / 1000), Some(99_999));
         assert_eq!(at(1100.0).map(Instant::as_nanos).map(|it| (it + 500) / 1000), Some(1_200_000));
         assert_eq!(at(0.0), None, "it is there already");
@@ -80,20 +85,20 @@ mod tests {
             Trajectory::to_position(Instant::ZERO, State::at_rest(from), to, how)
         };
         let up = go(0.0, 500);
-        let at = up.crossing(500.0, Way::Rising, Instant::ZERO).expect("it arrives");
+        let at = up.crossing(500.0, CrossingDirection::Rising, Instant::ZERO).expect("it arrives");
         assert!(up.end().expect("an end").since(at) < Duration::from_micros(1));
-        assert_eq!(go(900.0, 500).crossing(500.0, Way::Falling, Instant::ZERO), None);
-        assert!(go(500.0, 0).crossing(500.0, Way::Falling, Instant::ZERO).is_some());
+        assert_eq!(go(900.0, 500).crossing(500.0, CrossingDirection::Falling, Instant::ZERO), None);
+        assert!(go(500.0, 0).crossing(500.0, CrossingDirection::Falling, Instant::ZERO).is_some());
     }
 
     #[test]
     fn endless_motion_gets_anywhere() {
         let of = Trajectory::to_speed(Instant::ZERO, State::at_rest(0.0), -0.5, 1.0, 1.0);
-        let at = of.crossing(-1e6, Way::Falling, Instant::ZERO).expect("in 23 days");
+        let at = of.crossing(-1e6, CrossingDirection::Falling, Instant::ZERO).expect("in 23 days");
         assert!((at.as_secs_f64() - 2_000_000.25).abs() < 1e-4, "{at}");
-        assert_eq!(of.crossing(1.0, Way::Rising, Instant::ZERO), None);
+        assert_eq!(of.crossing(1.0, CrossingDirection::Rising, Instant::ZERO), None);
         let standing = Trajectory::rest(Instant::ZERO, 5.0);
-        assert_eq!(standing.crossing(5.0, Way::Rising, Instant::ZERO), None);
+        assert_eq!(standing.crossing(5.0, CrossingDirection::Rising, Instant::ZERO), None);
     }
 
     /// `found` is a change, and nobody who looks at `instants` sees one before it.
@@ -123,7 +128,7 @@ mod tests {
         fn agrees_with_looking(
             of in trajectories(), position in -30_000.0..30_000.0, whole: bool, rising: bool, part in 0.0..1.0,
         ) {
-            let way = if rising { Way::Rising } else { Way::Falling };
+            let way = if rising { CrossingDirection::Rising } else { CrossingDirection::Falling };
             let position: f64 = if whole { f64::round(position) } else { position };
             let instants = instants(&of, 1000);
             for after in [Instant::ZERO, of.begin, instants[(part * 999.0) as usize]] {

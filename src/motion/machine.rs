@@ -3,7 +3,7 @@
 //! Pure geometry: it says what is active at a position and when a trajectory gets to the next mark. What
 //! a drive does about it is not known here.
 
-use super::{State, Trajectory, Way};
+use super::{CrossingDirection, State, Trajectory};
 use crate::time::Instant;
 
 /// What stands along one axis, in counts.
@@ -52,7 +52,7 @@ pub enum Switch {
 
 /// A switch changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
+pub struct SwitchEdge {
     /// When.
     pub at: Instant,
     /// Is it active from then on?
@@ -67,7 +67,7 @@ pub struct IndexPulse {
     /// The count of the mark.
     pub mark: i64,
     /// In which way.
-    pub way: Way,
+    pub way: CrossingDirection,
 }
 
 /// The axis runs against a hard stop.
@@ -78,7 +78,7 @@ pub struct Hit {
     /// Where it gets stuck.
     pub position: i64,
     /// In which way.
-    pub way: Way,
+    pub way: CrossingDirection,
 }
 
 impl Machine {
@@ -107,14 +107,15 @@ impl Machine {
     }
 
     /// The next change of `switch` after `after`.
-    pub fn next_edge(&self, switch: Switch, of: &Trajectory, after: Instant) -> Option<Edge> {
+    pub fn next_edge(&self, switch: Switch, of: &Trajectory, after: Instant) -> Option<SwitchEdge> {
         let [from, to] = self.span(switch)?;
-        let edge = |mark, way, active| Some(Edge { at: of.crossing(mark, way, after)?, active });
+        let edge =
+            |mark, way, active| Some(SwitchEdge { at: of.crossing(mark, way, after)?, active });
         let edges = [
-            edge(from, Way::Rising, true),
-            edge(to, Way::Rising, false),
-            edge(to, Way::Falling, true),
-            edge(from, Way::Falling, false),
+            edge(from, CrossingDirection::Rising, true),
+            edge(to, CrossingDirection::Rising, false),
+            edge(to, CrossingDirection::Falling, true),
+            edge(from, CrossingDirection::Falling, false),
         ];
         edges.into_iter().flatten().min_by_key(|it| it.at)
     }
@@ -127,7 +128,8 @@ impl Machine {
         let low = below(of.position(after), every, offset)?;
         let high = low.checked_add(every)?;
         let pulse = |mark, way| self.index_at(mark, way, of, after);
-        let pulses = [pulse(low, Way::Falling), pulse(high, Way::Rising)];
+        let pulses =
+            [pulse(low, CrossingDirection::Falling), pulse(high, CrossingDirection::Rising)];
         pulses.into_iter().flatten().min_by_key(|it| it.at)
     }
 
@@ -135,7 +137,7 @@ impl Machine {
     pub fn index_at(
         &self,
         mark: i64,
-        way: Way,
+        way: CrossingDirection,
         of: &Trajectory,
         after: Instant,
     ) -> Option<IndexPulse> {
@@ -162,8 +164,8 @@ impl Machine {
             Some(Hit { at, position, way })
         };
         // To stand on the stop is allowed, so the mark above is the next number.
-        let high = hit(high, (high as f64).next_up(), Way::Rising);
-        let hits = [hit(low, low as f64, Way::Falling), high];
+        let high = hit(high, (high as f64).next_up(), CrossingDirection::Rising);
+        let hits = [hit(low, low as f64, CrossingDirection::Falling), high];
         hits.into_iter().flatten().min_by_key(|it| it.at)
     }
 
@@ -260,7 +262,7 @@ mod tests {
             assert!(same, "{one:?} at {count}");
         }
         let hit = mirrored.next_hit(&run(0, -1200), Instant::ZERO).expect("it goes beyond");
-        assert_eq!((hit.position, hit.way), (-1100, Way::Falling));
+        assert_eq!((hit.position, hit.way), (-1100, CrossingDirection::Falling));
         let mark = mirrored.next_index(&run(0, -200), Instant::ZERO).map(|it| it.mark);
         assert_eq!(mark, Some(-100));
     }
@@ -273,16 +275,22 @@ mod tests {
             let pulses = std::iter::successors(first, |it| free.next_index(&of, it.at));
             pulses.map(|it| (it.mark, it.way)).collect::<Vec<_>>()
         };
-        let up = [-600, 100, 800, 1500].map(|it| (it, Way::Rising));
+        let up = [-600, 100, 800, 1500].map(|it| (it, CrossingDirection::Rising));
         assert_eq!(marks(run(-1000, 1500)), up);
-        assert_eq!(marks(run(1500, -600)), [1500, 800, 100].map(|it| (it, Way::Falling)));
+        assert_eq!(
+            marks(run(1500, -600)),
+            [1500, 800, 100].map(|it| (it, CrossingDirection::Falling))
+        );
         // Too fast to stop: over the mark and back, or not as far as that.
         let how = Move { start_speed: 0.0, speed: 1000.0, accel: 1e4, decel: 1e4 };
         let over = |position| {
             let from = State { position, speed: 1000.0 };
             Trajectory::to_position(Instant::ZERO, from, 60, how)
         };
-        assert_eq!(marks(over(80.0)), [(100, Way::Rising), (100, Way::Falling)]);
+        assert_eq!(
+            marks(over(80.0)),
+            [(100, CrossingDirection::Rising), (100, CrossingDirection::Falling)]
+        );
         assert_eq!(marks(over(49.0)), []);
     }
 
@@ -298,7 +306,10 @@ mod tests {
     fn gets_stuck_on_a_hard_stop() {
         let of = run(0, 1200);
         let hit = MACHINE.next_hit(&of, Instant::ZERO).expect("it goes beyond");
-        assert_eq!((hit.position, hit.way, of.position(hit.at)), (1100, Way::Rising, 1100));
+        assert_eq!(
+            (hit.position, hit.way, of.position(hit.at)),
+            (1100, CrossingDirection::Rising, 1100)
+        );
         // Up to it is not against it; away from it neither; on into it at once.
         assert_eq!(MACHINE.next_hit(&run(0, 1100), Instant::ZERO), None);
         assert_eq!(MACHINE.next_hit(&run(0, -300), Instant::ZERO), None);
@@ -306,6 +317,6 @@ mod tests {
         let again = MACHINE.next_hit(&run(1100, 1200), Instant::ZERO).expect("it pushes");
         assert!(again.at < Instant::from_nanos(100_000), "{again:?}");
         let low = MACHINE.next_hit(&run(-300, -400), Instant::ZERO).expect("it pushes");
-        assert_eq!((low.position, low.way), (-300, Way::Falling));
+        assert_eq!((low.position, low.way), (-300, CrossingDirection::Falling));
     }
 }

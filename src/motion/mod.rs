@@ -26,7 +26,7 @@ mod tests;
 mod trajectory;
 
 pub use lag::Lag;
-pub use machine::{Edge, Hit, Index, IndexPulse, Machine, Switch, Zone};
+pub use machine::{Hit, Index, IndexPulse, Machine, Switch, SwitchEdge, Zone};
 pub use orders::Move;
 pub use search::first_equal;
 pub use trajectory::Trajectory;
@@ -49,14 +49,14 @@ impl State {
 
 /// Through which side something is passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum CrossingDirection {
     /// From below to at or above.
     Rising,
     /// From at or above to below.
     Falling,
 }
 
-impl Way {
+impl CrossingDirection {
     /// Is `value` past `mark`, for somebody who goes this way? A mark belongs to its upper side, so
     /// that zones `[from, to)` can be made of two of them.
     fn is_past(self, value: f64, mark: f64) -> bool {

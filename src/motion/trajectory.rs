@@ -3,7 +3,7 @@
 //! Made in `plan.rs`, only read here. It relies on two things that plans promise:
 //! in no segment does the speed change its sign, and the first segment starts at the beginning.
 
-use super::{State, Way};
+use super::{CrossingDirection, State};
 use crate::time::{Duration, Instant};
 
 /// A move in the worst case: brake, speed up, cruise, slow down.
@@ -96,7 +96,7 @@ impl Trajectory {
     }
 
     /// From when on, not before `after`, it goes this way first.
-    pub fn goes_at(&self, way: Way, after: Instant) -> Option<Instant> {
+    pub fn goes_at(&self, way: CrossingDirection, after: Instant) -> Option<Instant> {
         let now = self.seconds(after);
         let goes = |(segment, until): &(&Segment, f64)| {
             let middle = if until.is_finite() { (segment.from + until) / 2.0 } else { f64::MAX };

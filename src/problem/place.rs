@@ -11,7 +11,7 @@ mod syntax;
 mod walk;
 
 use super::{At, Mark, Path, Problem, Seg};
-use key::Key;
+use key::YamlKey;
 
 /// The marks of all keys and values of one document.
 #[derive(Debug, Default)]
@@ -77,19 +77,19 @@ impl Spot<'_> {
 #[derive(Debug)]
 struct Node {
     mark: Mark,
-    kind: Kind,
+    kind: NodeKind,
 }
 
 #[derive(Debug)]
-enum Kind {
+enum NodeKind {
     Leaf,
-    Map(Vec<Entry>),
+    Map(Vec<NodeEntry>),
     List(Vec<Node>),
 }
 
 #[derive(Debug)]
-struct Entry {
-    key: Key,
+struct NodeEntry {
+    key: YamlKey,
     mark: Mark,
     value: Node,
 }
@@ -97,11 +97,11 @@ struct Entry {
 impl Node {
     fn child(&self, seg: &Seg) -> Option<Spot<'_>> {
         match (&self.kind, seg) {
-            (Kind::Map(entries), Seg::Key(key)) => {
+            (NodeKind::Map(entries), Seg::Key(key)) => {
                 let entry = entries.iter().find(|entry| entry.key.is(key))?;
                 Some(Spot { key: entry.mark, node: &entry.value })
             }
-            (Kind::List(items), Seg::Index(index)) => {
+            (NodeKind::List(items), Seg::Index(index)) => {
                 let node = items.get(*index)?;
                 Some(Spot { key: node.mark, node })
             }

@@ -2,17 +2,19 @@
 //!
 //! Without a bench only what needs no drives is looked at. A key that could change nothing is a mistake.
 
-use super::order::{NoOrder, Order};
-use super::raw::{KEYS, RawCondition, RawCount, RawLevel, RawRegister, RawRepeat, RawStep};
-use super::site::Site;
-use super::step::{Condition, Step, Subject, Test, Trigger};
+use super::line::ScenarioLine;
+use super::order::{DriveOrder, NoOrder};
+use super::raw::{
+    KEYS, RawCondition, RawCount, RawLevel, RawRegister, RawScenarioStep, RawStepRepeat,
+};
+use super::step::{Condition, ScenarioStep, Subject, Test, Trigger};
 use super::{Part, Scenario};
 use crate::bench::BenchLine;
 use crate::bus::Command;
 use crate::event::DriveId;
 use crate::problem::{Path, Problem, bounds, section, suggest};
 use crate::time::{Duration, Instant, parse_duration};
-use crate::words::{Output, Quantity, Word};
+use crate::vocabulary::{Named, Output, Quantity};
 use serde::Deserialize;
 use serde_yaml::Value;
 
@@ -38,8 +40,8 @@ fn read(text: &str, lines: Option<&[BenchLine]>) -> Result<Scenario, Vec<Problem
     if !problems.is_empty() {
         return Err(problems);
     }
-    let sites = lines.map(|lines| lines.iter().map(Site::new).collect());
-    let mut reader = Reader { sites, problems };
+    let sites = lines.map(|lines| lines.iter().map(ScenarioLine::new).collect());
+    let mut reader = ScenarioReader { sites, problems };
     let scenario = reader.scenario(&file);
     match reader.problems.is_empty() {
         true => Ok(scenario),
@@ -49,22 +51,22 @@ fn read(text: &str, lines: Option<&[BenchLine]>) -> Result<Scenario, Vec<Problem
 
 /// Everything of the file but its steps, which are read one by one.
 #[derive(Deserialize)]
-struct Head {
+struct ScenarioHead {
     limit: Option<String>,
 }
 
-struct Reader<'a> {
+struct ScenarioReader<'a> {
     /// The lines with their drives, if they are known.
-    sites: Option<Vec<Site<'a>>>,
+    sites: Option<Vec<ScenarioLine<'a>>>,
     problems: Vec<Problem>,
 }
 
-impl Reader<'_> {
+impl ScenarioReader<'_> {
     fn scenario(&mut self, file: &Value) -> Scenario {
         let mut head = file.clone();
         let steps = head.as_mapping_mut().and_then(|head| head.remove("steps"));
         let root = Path::root();
-        let head: Option<Head> = section::read(&head, &root, KEYS, &mut self.problems);
+        let head: Option<ScenarioHead> = section::read(&head, &root, KEYS, &mut self.problems);
         let limit = head.and_then(|head| self.limit(head.limit.as_ref(), &root.key("limit")));
         let path = root.key("steps");
         let items = match steps {
@@ -86,7 +88,8 @@ impl Reader<'_> {
         let mut parts = vec![Part { steps: Vec::new(), limit }; count];
         for (i, value) in items.iter().enumerate() {
             let path = path.index(i);
-            let raw: Option<RawStep> = section::read(value, &path, KEYS, &mut self.problems);
+            let raw: Option<RawScenarioStep> =
+                section::read(value, &path, KEYS, &mut self.problems);
             let Some(raw) = raw else { continue };
             let line = self.line(&raw, &path);
             let step = self.step(&raw, line, &path);
@@ -105,11 +108,11 @@ impl Reader<'_> {
     }
 
     /// Which line the step is about.
-    fn line(&mut self, raw: &RawStep, path: &Path) -> Option<usize> {
+    fn line(&mut self, raw: &RawScenarioStep, path: &Path) -> Option<usize> {
         let (Some(sites), Some(name)) = (&self.sites, &raw.line) else {
             return self.sites.as_ref().map(|_| 0);
         };
-        let names: Vec<_> = sites.iter().map(|site| site.line.name.as_str()).collect();
+        let names: Vec<_> = sites.iter().map(|line| line.line.name.as_str()).collect();
         let at = names.iter().position(|it| it == name);
         if at.is_none() {
             let advice = suggest::did_you_mean(name, names.iter().copied());
@@ -120,7 +123,12 @@ impl Reader<'_> {
         at
     }
 
-    fn step(&mut self, raw: &RawStep, line: Option<usize>, path: &Path) -> Option<Step> {
+    fn step(
+        &mut self,
+        raw: &RawScenarioStep,
+        line: Option<usize>,
+        path: &Path,
+    ) -> Option<ScenarioStep> {
         let drive = self.drive(line, raw.unit, DriveId(0), &path.key("unit"));
         let lengths =
             [("do", "orders", raw.orders.len()), ("expect", "conditions", raw.expect.len())];
@@ -152,12 +160,12 @@ impl Reader<'_> {
         let within = self.time_above_zero(raw.within.as_ref(), &path.key("within"));
         let within = within.unwrap_or_default();
         let name = raw.name.clone();
-        Some(Step { name, trigger: trigger?, commands, repeat, expect, within })
+        Some(ScenarioStep { name, trigger: trigger?, commands, repeat, expect, within })
     }
 
     fn trigger(
         &mut self,
-        raw: &RawStep,
+        raw: &RawScenarioStep,
         line: Option<usize>,
         drive: DriveId,
         path: &Path,
@@ -200,8 +208,8 @@ impl Reader<'_> {
 
     fn repeat(
         &mut self,
-        repeat: &RawRepeat,
-        raw: &RawStep,
+        repeat: &RawStepRepeat,
+        raw: &RawScenarioStep,
         path: &Path,
     ) -> Option<(u32, Duration)> {
         let own = path.key("repeat");
@@ -226,7 +234,7 @@ impl Reader<'_> {
 
     fn commands(
         &mut self,
-        raw: &RawStep,
+        raw: &RawScenarioStep,
         line: Option<usize>,
         drive: DriveId,
         path: &Path,
@@ -234,9 +242,9 @@ impl Reader<'_> {
         let mut commands = Vec::new();
         for (i, text) in raw.orders.iter().enumerate() {
             let path = path.key("do").index(i);
-            let site = line.and_then(|line| self.sites.as_mut()?.get_mut(line));
-            let read = Order::parse(text).and_then(|order| match site {
-                Some(site) => site.commands(&order, drive),
+            let line = line.and_then(|line| self.sites.as_mut()?.get_mut(line));
+            let read = DriveOrder::parse(text).and_then(|order| match line {
+                Some(line) => line.commands(&order, drive),
                 None => Ok(Vec::new()),
             });
             match read {
@@ -266,9 +274,9 @@ impl Reader<'_> {
 
     /// No register shows a number that its type does not have.
     fn refuse_never(&mut self, condition: &Condition, line: Option<usize>, path: &Path) {
-        let site = line.and_then(|line| self.sites.as_ref()?.get(line));
-        let (Some(site), Subject::Row(row)) = (site, condition.subject) else { return };
-        let row = site.model(condition.drive).map.row(row);
+        let line = line.and_then(|line| self.sites.as_ref()?.get(line));
+        let (Some(line), Subject::Row(row)) = (line, condition.subject) else { return };
+        let row = line.model(condition.drive).map.row(row);
         let ((low, high), label) = (row.kind.limits(), row.label());
         let (key, number) = match condition.test {
             Test::Is(number) if !(low..=high).contains(&number) => ("is", number),
@@ -303,8 +311,8 @@ impl Reader<'_> {
                 )
             }
             (None, None, Some(register)) => {
-                let site = self.sites.as_ref()?.get(line?)?;
-                let map = &site.model(drive).map;
+                let line = self.sites.as_ref()?.get(line?)?;
+                let map = &line.model(drive).map;
                 let name = match register {
                     RawRegister::Address(address) => address.to_string(),
                     RawRegister::Name(name) => name.clone(),
@@ -377,9 +385,9 @@ impl Reader<'_> {
         default: DriveId,
         path: &Path,
     ) -> DriveId {
-        let site = line.and_then(|line| self.sites.as_ref()?.get(line));
-        let (Some(unit), Some(site)) = (unit, site) else { return default };
-        match site.find(unit) {
+        let line = line.and_then(|line| self.sites.as_ref()?.get(line));
+        let (Some(unit), Some(line)) = (unit, line) else { return default };
+        match line.find(unit) {
             Some(drive) => drive,
             None => {
                 self.refuse(path, format!("nobody answers to unit {unit} on this line"), None);

@@ -4,8 +4,8 @@
 //! input, then [`Director::look`]. A condition is looked at whenever something happens on the line, and at the instant
 //! at which it is going to hold by itself; nothing is polled.
 
-use super::step::{Step, Trigger};
-use crate::bus::{Bus, Command, Heard};
+use super::step::{ScenarioStep, Trigger};
+use crate::bus::{Bus, Command, RequestCounts};
 use crate::event::{Outcome, Remark};
 use crate::time::{Duration, Instant};
 
@@ -25,20 +25,20 @@ pub struct Verdict {
 /// The steps of one line, and how far they are.
 #[derive(Debug, Clone)]
 pub struct Director {
-    steps: Vec<Step>,
+    steps: Vec<ScenarioStep>,
     limit: Option<Instant>,
     next: usize,
-    doing: Doing,
+    state: StepState,
     /// When the step above was done, and what the drives had heard by then.
     since: Instant,
-    heard: Vec<Heard>,
+    request_counts: Vec<RequestCounts>,
     /// When to look again, if nothing happens on the line before.
     due: Option<Instant>,
     verdicts: Vec<Verdict>,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Doing {
+enum StepState {
     Waits,
     Repeats { left: u32, at: Instant },
     Expects { until: Instant },
@@ -46,14 +46,14 @@ enum Doing {
 
 impl Director {
     /// For a line that is switched on at the beginning of time; all is to be done until `limit`.
-    pub fn new(steps: Vec<Step>, limit: Option<Instant>) -> Self {
+    pub fn new(steps: Vec<ScenarioStep>, limit: Option<Instant>) -> Self {
         Self {
             steps,
             limit,
             next: 0,
-            doing: Doing::Waits,
+            state: StepState::Waits,
             since: Instant::ZERO,
-            heard: Vec::new(),
+            request_counts: Vec::new(),
             due: Some(Instant::ZERO),
             verdicts: Vec::new(),
         }
@@ -77,18 +77,18 @@ impl Director {
             let next = [woken, self.due].into_iter().flatten().min();
             let Some(at) = next.filter(|at| *at <= now) else { break };
             bus.advance_to(at);
-            self.look(bus);
+            self.poll(bus);
         }
         bus.advance_to(now);
     }
 
     /// Carries out what is to be done right now: after input, and whatever else may have changed something.
-    pub fn look(&mut self, bus: &mut Bus) {
+    pub fn poll(&mut self, bus: &mut Bus) {
         bus.catch_up();
         while self.go_on(bus) {
             bus.catch_up();
         }
-        self.due = self.next_look(bus);
+        self.due = self.next_poll(bus);
     }
 
     /// The run is over at `now`: what has not come has failed.
@@ -123,20 +123,20 @@ impl Director {
             self.finish(now);
             return false;
         }
-        match self.doing {
-            Doing::Waits if self.has_come(&step.trigger, bus) => {
+        match self.state {
+            StepState::Waits if self.has_come(&step.trigger, bus) => {
                 let times = step.repeat.map_or(1, |(times, _)| times);
                 self.act(bus, times);
             }
-            Doing::Repeats { left, at } if at <= now => self.act(bus, left),
-            Doing::Expects { until } => {
+            StepState::Repeats { left, at } if at <= now => self.act(bus, left),
+            StepState::Expects { until } => {
                 let lacks = step.expect.iter().find(|it| !it.holds(bus.drive(it.drive)));
                 match lacks.map(|it| it.tell(bus)) {
                     Some(_) if now < until => return false,
                     failure => self.settle(bus, failure),
                 }
             }
-            Doing::Waits | Doing::Repeats { .. } => return false,
+            StepState::Waits | StepState::Repeats { .. } => return false,
         }
         true
     }
@@ -150,8 +150,9 @@ impl Director {
                 let drives =
                     bus.drives().map(|(id, _)| id).filter(|id| drive.is_none_or(|it| it == *id));
                 let new = drives.map(|id| {
-                    let before = self.heard.get(usize::from(id.0)).copied().unwrap_or_default();
-                    kind.count(bus.heard(id)) - kind.count(before)
+                    let before =
+                        self.request_counts.get(usize::from(id.0)).copied().unwrap_or_default();
+                    kind.count(bus.request_counts(id)) - kind.count(before)
                 });
                 new.sum::<u64>() >= n
             }
@@ -170,10 +171,10 @@ impl Director {
         }
         match step.repeat {
             Some((_, every)) if times > 1 => {
-                self.doing = Doing::Repeats { left: times - 1, at: now + every };
+                self.state = StepState::Repeats { left: times - 1, at: now + every };
             }
             _ if step.expect.is_empty() => self.settle(bus, None),
-            _ => self.doing = Doing::Expects { until: now + step.within },
+            _ => self.state = StepState::Expects { until: now + step.within },
         }
     }
 
@@ -185,7 +186,7 @@ impl Director {
             tell(bus, step, outcome, failure.clone().unwrap_or_default());
         }
         self.judge(bus.now(), failure);
-        self.heard = bus.drives().map(|(id, _)| bus.heard(id)).collect();
+        self.request_counts = bus.drives().map(|(id, _)| bus.request_counts(id)).collect();
     }
 
     /// Notes what became of the step, and goes on to the next.
@@ -196,40 +197,42 @@ impl Director {
             self.verdicts.push(Verdict { step, at, took, failure });
         }
         self.next += 1;
-        (self.doing, self.since) = (Doing::Waits, at);
+        (self.state, self.since) = (StepState::Waits, at);
     }
 
     /// Why the present step is not settled.
     fn unsettled(&self) -> &'static str {
-        match self.doing {
-            Doing::Waits => "the run has ended before this step",
-            Doing::Repeats { .. } | Doing::Expects { .. } => "the run has ended during this step",
+        match self.state {
+            StepState::Waits => "the run has ended before this step",
+            StepState::Repeats { .. } | StepState::Expects { .. } => {
+                "the run has ended during this step"
+            }
         }
     }
 
-    fn next_look(&self, bus: &mut Bus) -> Option<Instant> {
+    fn next_poll(&self, bus: &mut Bus) -> Option<Instant> {
         let step = self.steps.get(self.next)?;
         let mut all = vec![self.limit];
-        match self.doing {
-            Doing::Repeats { at, .. } => all.push(Some(at)),
-            Doing::Waits => all.push(match step.trigger {
+        match self.state {
+            StepState::Repeats { at, .. } => all.push(Some(at)),
+            StepState::Waits => all.push(match step.trigger {
                 Trigger::At(at) => Some(at),
                 Trigger::Wait(time) => Some(self.since + time),
                 Trigger::After { .. } => None,
-                Trigger::When(it) => bus.foresee(it.drive, |drive| it.side(drive)),
+                Trigger::When(it) => bus.next_time_when(it.drive, |drive| it.side(drive)),
             }),
-            Doing::Expects { until } => {
+            StepState::Expects { until } => {
                 all.push(Some(until));
-                let foreseen =
-                    |it: &super::Condition| bus.foresee(it.drive, |drive| it.side(drive));
-                all.extend(step.expect.iter().map(foreseen));
+                let next_time =
+                    |it: &super::Condition| bus.next_time_when(it.drive, |drive| it.side(drive));
+                all.extend(step.expect.iter().map(next_time));
             }
         }
         all.into_iter().flatten().min()
     }
 }
 
-fn tell(bus: &mut Bus, step: &Step, outcome: Outcome, what: String) {
+fn tell(bus: &mut Bus, step: &ScenarioStep, outcome: Outcome, what: String) {
     let remark = Remark { step: step.name.clone(), outcome, what };
     // Only drives and rules refuse commands.
     let told = bus.command(bus.now(), Command::Tell(remark));

@@ -6,16 +6,16 @@
 mod compile;
 mod director;
 mod junit;
+mod line;
 mod order;
 pub mod raw;
-mod site;
 mod step;
 
 pub use compile::{check, parse};
 pub use director::{Director, Verdict};
 pub use junit::junit;
-pub use order::{NoOrder, Order};
-pub use step::{Condition, Step, Subject, Test, Trigger};
+pub use order::{DriveOrder, NoOrder};
+pub use step::{Condition, ScenarioStep, Subject, Test, Trigger};
 
 use crate::time::Instant;
 
@@ -30,7 +30,7 @@ pub struct Scenario {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// The steps, in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<ScenarioStep>,
     /// All is to be done by then.
     pub limit: Option<Instant>,
 }

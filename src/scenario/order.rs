@@ -1,13 +1,13 @@
-//! Something to do to a drive or to the weather, as one line of text: `terminal I1 on`, `hold overload on`.
+//! Something to do to a drive or to the faults, as one line of text: `terminal I1 on`, `hold overload on`.
 //!
 //! Scenarios and transcripts speak this language.
 
 use crate::bus::{BETWEEN_EDGES, Command};
-use crate::event::{DriveId, Trouble};
+use crate::event::{DeviceFault, DriveId};
 use crate::model::Model;
 use crate::problem::suggest;
 use crate::time::{Duration, parse_duration};
-use crate::words::{AlarmCause, Word};
+use crate::vocabulary::{AlarmCause, Named};
 
 /// What can be written.
 const FORMS: [&str; 13] = [
@@ -28,7 +28,7 @@ const FORMS: [&str; 13] = [
 
 /// Something to do, with terminals by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Order {
+pub enum DriveOrder {
     /// Put a signal on a terminal, or take it off.
     Terminal(String, bool),
     /// Have a terminal keep its level, or no longer.
@@ -38,7 +38,7 @@ pub enum Order {
     /// Trip with an alarm.
     Raise(AlarmCause),
     /// Something is wrong from now on, or no longer.
-    Trouble(Trouble, bool),
+    DeviceFault(DeviceFault, bool),
     /// Power on or off.
     Power(bool),
     /// Power off and on.
@@ -58,7 +58,7 @@ pub struct NoOrder {
     pub advice: Option<String>,
 }
 
-impl Order {
+impl DriveOrder {
     /// Reads one line.
     ///
     /// # Errors
@@ -82,11 +82,11 @@ impl Order {
             }
             ["raise", cause] => Self::Raise(cause_of(cause)?),
             ["hold", cause, level] => {
-                Self::Trouble(Trouble::Cause(cause_of(cause)?), is_on(level)?)
+                Self::DeviceFault(DeviceFault::Cause(cause_of(cause)?), is_on(level)?)
             }
-            ["block", level] => Self::Trouble(Trouble::Blocked, is_on(level)?),
-            ["encoder", level] => Self::Trouble(Trouble::EncoderLost, !is_on(level)?),
-            ["freeze", level] => Self::Trouble(Trouble::Frozen, is_on(level)?),
+            ["block", level] => Self::DeviceFault(DeviceFault::Blocked, is_on(level)?),
+            ["encoder", level] => Self::DeviceFault(DeviceFault::EncoderLost, !is_on(level)?),
+            ["freeze", level] => Self::DeviceFault(DeviceFault::Frozen, is_on(level)?),
             ["power", level] => Self::Power(is_on(level)?),
             ["power_cycle"] => Self::PowerCycle,
             // A value may have blanks inside.
@@ -107,20 +107,22 @@ impl Order {
                 Command::Terminal { drive, index: terminal(model, name)?, signal: *signal }
             }
             Self::Stick(name, on) => {
-                let trouble = Trouble::Stuck(terminal(model, name)?);
-                Command::Trouble { drive, trouble, on: *on }
+                let device_fault = DeviceFault::Stuck(terminal(model, name)?);
+                Command::DeviceFault { drive, device_fault, on: *on }
             }
             Self::Bounce(name, times, every) => {
                 let index = terminal(model, name)?;
                 Command::Bounce { drive, index, times: *times, every: *every }
             }
-            Self::Raise(cause) | Self::Trouble(Trouble::Cause(cause), _)
+            Self::Raise(cause) | Self::DeviceFault(DeviceFault::Cause(cause), _)
                 if model.wiring.alarm(*cause).is_none() =>
             {
                 return Err(no(format!("the model has no alarm for `{}`", cause.name())));
             }
             Self::Raise(cause) => Command::Raise { drive, cause: *cause },
-            Self::Trouble(trouble, on) => Command::Trouble { drive, trouble: *trouble, on: *on },
+            Self::DeviceFault(device_fault, on) => {
+                Command::DeviceFault { drive, device_fault: *device_fault, on: *on }
+            }
             Self::Power(on) => Command::Power { drive, on: *on },
             Self::PowerCycle => Command::PowerCycle { drive },
             Self::Fault(_) | Self::NoFault(_) => return Ok(None),

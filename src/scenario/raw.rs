@@ -12,14 +12,14 @@ pub struct RawScenario {
     /// The run ends here, in emulated time (`60s`), and steps that have not come by then have failed. Default: never.
     pub limit: Option<String>,
     /// The steps. Each waits until the one above it on its line is done.
-    pub steps: Vec<RawStep>,
+    pub steps: Vec<RawScenarioStep>,
 }
 
 /// One step: what it waits for, what it does, and what it expects then. At most one of `at`, `wait`, `after` and
 /// `when` says what it waits for; without any it comes right behind the step above.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawStep {
+pub struct RawScenarioStep {
     /// Its name in the log and in the report.
     pub name: String,
     /// The line that it is about. Default: the first of the bench.
@@ -35,7 +35,7 @@ pub struct RawStep {
     /// Wait until this holds.
     pub when: Option<RawCondition>,
     /// Do it several times.
-    pub repeat: Option<RawRepeat>,
+    pub repeat: Option<RawStepRepeat>,
     /// What is done, in this order: `terminal I1 on`, `hold overload on`, `fault lose_reply:every=10` ...
     #[serde(default, rename = "do")]
     pub orders: Vec<String>,
@@ -118,7 +118,7 @@ pub enum RawLevel {
 /// Several times.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawRepeat {
+pub struct RawStepRepeat {
     /// From one time to the next.
     pub every: String,
     /// How many times in all, 2 or more.

@@ -1,16 +1,16 @@
 //! A step as it is carried out: what it waits for, what it does, what it expects.
 
 use super::raw::RawKind;
-use crate::bus::{Bus, Command, Heard};
+use crate::bus::{Bus, Command, RequestCounts};
 use crate::drive::Drive;
 use crate::event::DriveId;
 use crate::time::{Duration, Instant};
-use crate::words::{Output, Quantity, RowId, Word};
+use crate::vocabulary::{Named, Output, Quantity, RowId};
 use std::cmp::Ordering;
 
 /// One step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct ScenarioStep {
     /// Its name.
     pub name: String,
     /// What it waits for.
@@ -77,12 +77,12 @@ pub enum Test {
 }
 
 impl RawKind {
-    /// How many of these are in `heard`.
-    pub(super) fn count(self, heard: Heard) -> u64 {
+    /// How many of these are in `counts`.
+    pub(super) fn count(self, counts: RequestCounts) -> u64 {
         match self {
-            Self::Read => heard.reads,
-            Self::Write => heard.writes,
-            Self::Any => heard.all(),
+            Self::Read => counts.reads,
+            Self::Write => counts.writes,
+            Self::Any => counts.all(),
         }
     }
 }

@@ -30,7 +30,7 @@
 
 use super::Rig;
 use super::rig::InUse;
-use crate::shell::{Clock, Frames, Logger, Served, Stage, serve_stream};
+use crate::server::{Clock, Frames, LineServer, Logger, ScenarioRun, serve_stream};
 use std::future::Future;
 use std::io;
 use std::path::Path;
@@ -68,11 +68,15 @@ fn served(
         events.iter().for_each(|event| logger.log(event, &name, &bus));
         Arc::new(Mutex::new(logger))
     });
-    let stage = director.map(|it| Stage::new(it, Arc::new(Notify::new())));
+    let scenario = director.map(|it| ScenarioRun::new(it, Arc::new(Notify::new())));
     let serve = async move {
         let (clock, frames) = (Clock::start_at(now, 1.0), Frames::Serial(wire));
-        serve_stream(Served { name, bus, clock, frames, log, store: None, stage }, link, drive)
-            .await
+        serve_stream(
+            LineServer { name, bus, clock, frames, log, store: None, scenario },
+            link,
+            drive,
+        )
+        .await
     };
     (master, serve)
 }

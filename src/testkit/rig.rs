@@ -7,7 +7,7 @@ use crate::bench::{
 use crate::bus::{Bus, Command, CommandError, LinkId, Output};
 use crate::drive::Drive;
 use crate::event::{DriveId, Event};
-use crate::fault::Habits;
+use crate::fault::LineBehaviour;
 use crate::line::Framing;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
@@ -64,7 +64,7 @@ impl Rig {
     /// A line with one drive of the model in `text`.
     ///
     /// # Errors
-    /// Everything that is wrong with the model or the wishes.
+    /// Everything that is wrong with the model or the settings.
     pub fn model(text: &str, choices: &Choices, spec: &DeviceSpec) -> Result<Self, Vec<Problem>> {
         let model = Arc::new(load(text, choices)?);
         let device = Device::new(model, spec).map_err(|problems| {
@@ -75,8 +75,9 @@ impl Rig {
         })?;
         let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
         let (name, port) = ("line".into(), PortSpec::Pty(None));
-        let (devices, faults, habits) = (vec![device], Vec::new(), Habits::default());
-        Ok(Self::line(BenchLine { name, port, wire, devices, faults, habits }))
+        let (devices, faults, line_behaviour) =
+            (vec![device], Vec::new(), LineBehaviour::default());
+        Ok(Self::line(BenchLine { name, port, wire, devices, faults, line_behaviour }))
     }
 
     /// The first line of a bench file. Its port is not opened.
@@ -155,14 +156,14 @@ impl Rig {
         Ok(self.switched_on())
     }
 
-    /// The same line with other habits. On a rig in use: [`Command::SetHabits`].
+    /// The same line with other line behaviour. On a rig in use: [`Command::SetLineBehaviour`].
     ///
     /// # Panics
     /// If the rig is in use.
     #[must_use]
-    pub fn with_habits(mut self, habits: Habits) -> Self {
-        self.must_be_new("with_habits");
-        self.line.habits = habits;
+    pub fn with_line_behaviour(mut self, line_behaviour: LineBehaviour) -> Self {
+        self.must_be_new("with_line_behaviour");
+        self.line.line_behaviour = line_behaviour;
         self.switched_on()
     }
 
@@ -308,17 +309,19 @@ impl Rig {
     /// The first thing that is wrong with it.
     pub fn add_fault(&mut self, spec: &str) -> Result<(), String> {
         let taken: Vec<_> = self.bus.faults().names().collect();
-        let weather = self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
-        if !weather.habits.is_empty() {
-            let habits = self.bus.habits().clone().and(weather.habits);
-            self.command(Command::SetHabits(habits)).map_err(|error| error.to_string())?;
+        let fault_set =
+            self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
+        if !fault_set.line_behaviour.is_empty() {
+            let line_behaviour = self.bus.line_behaviour().clone().and(fault_set.line_behaviour);
+            self.command(Command::SetLineBehaviour(line_behaviour))
+                .map_err(|error| error.to_string())?;
         }
-        weather.rules.into_iter().try_for_each(|rule| {
+        fault_set.rules.into_iter().try_for_each(|rule| {
             self.command(Command::AddFault(rule)).map_err(|error| error.to_string())
         })
     }
 
-    /// Does something to the drives or to the weather.
+    /// Does something to the drives or to the faults.
     ///
     /// # Errors
     /// If there is no such drive, terminal, alarm or rule.
@@ -369,7 +372,7 @@ impl Rig {
 
     fn drain(&mut self) -> Vec<u8> {
         if let Some(director) = &mut self.director {
-            director.look(&mut self.bus);
+            director.poll(&mut self.bus);
         }
         self.bus.catch_up();
         let mut sent = Vec::new();

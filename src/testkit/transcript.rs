@@ -28,14 +28,14 @@ mod run;
 mod script;
 
 pub use run::run;
-pub use script::{Check, Script, Step};
+pub use script::{Check, Script, TranscriptStep};
 
 use thiserror::Error;
 
 /// Where and why a transcript failed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {line}: {what}")]
-pub struct Failure {
+pub struct TranscriptFailure {
     /// Line of the transcript, from 1.
     pub line: usize,
     /// What came instead of what.

@@ -64,7 +64,7 @@ fn median(calls: u32, mut call: impl FnMut()) -> f64 {
 #[cfg(feature = "cli")]
 mod pseudo_terminal {
     use super::*;
-    use drivemu::shell::port::Pty;
+    use drivemu::server::port::Pty;
     use std::io::{Read, Write};
     use std::path::PathBuf;
 
@@ -121,24 +121,24 @@ mod pseudo_terminal {
 
     fn serve_drive() -> PathBuf {
         use drivemu::bench::{Device, WireSpec};
-        use drivemu::shell::port::Tty;
-        use drivemu::shell::{Clock, Frames, Served, serve_tty};
+        use drivemu::server::port::Tty;
+        use drivemu::server::{Clock, Frames, LineServer, serve_tty};
         serve(|pty| async move {
             let model = Builtin::find(Builtin::default_name()).expect("the default model");
             let model = model.load(&Default::default()).expect("a valid model");
-            let device = Device::new(model.into(), &Default::default()).expect("no wishes");
+            let device = Device::new(model.into(), &Default::default()).expect("no settings");
             let mut bus = Bus::new();
             bus.add(device.model.clone(), &device.setups[0], 0);
             let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
             let (clock, frames) = (Clock::start(1.0), Frames::Serial(wire));
-            let line = Served {
+            let line = LineServer {
                 name: "line".into(),
                 bus,
                 clock,
                 frames,
                 log: None,
                 store: None,
-                stage: None,
+                scenario: None,
             };
             serve_tty(line, Tty::Pty(pty), Box::new(|_| Ok(Tty::Pty(Pty::open(None)?)))).await;
         })

@@ -11,8 +11,8 @@ use drivemu::line::Framing;
 use drivemu::model::builtin::Builtin;
 use drivemu::testkit::hex;
 use drivemu::time::{Duration, Instant};
+use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::rtu;
-use drivemu::words::AlarmCause;
 use std::time::Instant as Wall;
 
 /// An hour on one model: how it is set up, what a master says every twenty seconds.

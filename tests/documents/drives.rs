@@ -4,7 +4,7 @@ use crate::expect::{read, root, same};
 use crate::kit::{MODELS, text_of};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{AlarmStop, Applies, Choices, Model, Row, Shown, Shows};
-use drivemu::words::{Action, AlarmCause, Input, Output, Threshold, Word};
+use drivemu::vocabulary::{Action, AlarmCause, Input, Named, Output, Threshold};
 use serde_yaml::Value;
 use std::fmt::Write as _;
 

@@ -1,11 +1,11 @@
 //! The bytes on the wire, for each kind.
 
-use super::{ANSWER, READ, SILENCE, WRITE, ask, drive, drive_of, frame, jog_speed, mishaps};
+use super::{ANSWER, READ, SILENCE, WRITE, ask, drive, drive_of, effects, frame, jog_speed};
 use crate::kit::{drain, line_of, text_of};
 use drivemu::bench::{DeviceSpec, PortSpec};
 use drivemu::bus::WakeReason;
-use drivemu::event::Mishap;
-use drivemu::fault::Kind;
+use drivemu::event::FaultEffect;
+use drivemu::fault::FaultKind;
 use drivemu::line::Framing;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
@@ -21,26 +21,26 @@ fn both(rig: &mut Rig, pdu: &[u8]) -> [Vec<u8>; 2] {
 /// A kind that is not tested here does not compile.
 #[test]
 fn each_kind_on_rtu() {
-    for &kind in Kind::ALL {
+    for &kind in FaultKind::ALL {
         let whole = frame(ANSWER);
         let rig = |spec: &str| drive(&[spec]);
         match kind {
-            Kind::LoseRequest => {
+            FaultKind::LoseRequest => {
                 let mut rig = rig("lose_request");
                 assert_eq!(both(&mut rig, WRITE), [SILENCE, SILENCE]);
                 assert_eq!(jog_speed(&mut rig), 100, "never seen");
             }
-            Kind::LoseReply => {
+            FaultKind::LoseReply => {
                 let mut rig = rig("lose_reply");
                 assert_eq!(both(&mut rig, WRITE), [SILENCE, SILENCE]);
                 assert_eq!(jog_speed(&mut rig), 7, "executed");
             }
-            Kind::BadCrc => {
+            FaultKind::BadCrc => {
                 let mut bad = whole.clone();
                 bad[5..].iter_mut().for_each(|byte| *byte ^= 0xFF);
                 assert_eq!(ask(&mut rig("bad_crc"), READ), bad);
             }
-            Kind::FlipBits => {
+            FaultKind::FlipBits => {
                 for bits in [1, 16] {
                     let got = ask(&mut rig(&format!("flip_bits:bits={bits}")), READ);
                     let turned: u32 =
@@ -50,22 +50,22 @@ fn each_kind_on_rtu() {
                 let got = ask(&mut rig("flip_bits"), READ);
                 assert!(rtu::decode(&got).is_err(), "one by default, which no CRC misses");
             }
-            Kind::Truncate => {
+            FaultKind::Truncate => {
                 assert_eq!(ask(&mut rig("truncate:bytes=3"), READ), whole[..4]);
                 assert_eq!(ask(&mut rig("truncate"), READ), whole[..6]);
                 assert_eq!(ask(&mut rig("truncate:bytes=200"), READ), whole[..1]);
             }
-            Kind::Extra => {
+            FaultKind::Extra => {
                 let got = ask(&mut rig("extra:bytes=3"), READ);
                 assert_eq!((&got[..7], got.len()), (&whole[..], 10));
                 assert_eq!(ask(&mut rig("extra"), READ).len(), 8);
             }
-            Kind::Garbage => {
+            FaultKind::Garbage => {
                 let got = ask(&mut rig("garbage:bytes=3"), READ);
                 assert_eq!((&got[3..], got.len()), (&whole[..], 10));
                 assert_eq!(ask(&mut rig("garbage"), READ).len(), 8);
             }
-            Kind::Delay => {
+            FaultKind::Delay => {
                 let mut rig = rig("delay:ms=200");
                 assert_eq!(ask(&mut rig, WRITE), SILENCE);
                 assert_eq!(jog_speed(&mut rig), 7, "executed at once");
@@ -74,15 +74,15 @@ fn each_kind_on_rtu() {
                 assert_eq!(rig.advance(199 * MS), SILENCE);
                 assert_eq!(rig.advance(MS), frame(WRITE));
             }
-            Kind::Late => {
+            FaultKind::Late => {
                 let mut rig = rig("late:count=1");
                 assert_eq!(both(&mut rig, WRITE), [SILENCE, SILENCE]);
                 assert_eq!(ask(&mut rig, READ), [frame(WRITE), frame(&[3, 2, 0, 7])].concat());
             }
-            Kind::Duplicate => {
+            FaultKind::Duplicate => {
                 assert_eq!(ask(&mut rig("duplicate"), READ), [&whole[..], &whole].concat());
             }
-            Kind::Split => {
+            FaultKind::Split => {
                 let pieces = |a: &[u8], b: &[u8]| [a.to_vec(), b.to_vec()];
                 let got = both(&mut rig("split:at=2,gap_ms=50"), READ);
                 assert_eq!(got, pieces(&whole[..2], &whole[2..]));
@@ -93,38 +93,41 @@ fn each_kind_on_rtu() {
                 let mut rig = drive(&["split:at=300"]);
                 assert_eq!(ask(&mut rig, READ), whole[..6], "two pieces always");
             }
-            Kind::WrongUnit => {
+            FaultKind::WrongUnit => {
                 let from = |unit| rtu::encode(unit, ANSWER).to_vec();
                 assert_eq!(ask(&mut rig("wrong_unit:to=9"), READ), from(9));
                 assert_eq!(ask(&mut rig("wrong_unit"), READ), from(2));
                 let mut rig = rig("wrong_unit:to=1");
                 assert_eq!(ask(&mut rig, READ), whole, "that is the right one");
-                assert_eq!(mishaps(&rig), []);
+                assert_eq!(effects(&rig), []);
             }
-            Kind::WrongFunction => {
+            FaultKind::WrongFunction => {
                 let of = |function| frame(&[&[function], &ANSWER[1..]].concat());
                 assert_eq!(ask(&mut rig("wrong_function:to=0x10"), READ), of(0x10));
                 assert_eq!(ask(&mut rig("wrong_function"), READ), of(0x04));
                 assert_eq!(ask(&mut rig("wrong_function"), &[0x2B]), frame(&[0xAC, 1]));
             }
-            Kind::Exception => {
+            FaultKind::Exception => {
                 let mut rig = rig("exception:code=0x0B");
                 assert_eq!(both(&mut rig, WRITE), [frame(&[0x86, 0x0B]), vec![]]);
                 assert_eq!(jog_speed(&mut rig), 100, "not executed");
             }
-            Kind::Busy => {
+            FaultKind::Busy => {
                 let mut rig = rig("busy");
                 assert_eq!(both(&mut rig, WRITE), [frame(&[0x86, 0x06]), vec![]]);
                 assert_eq!(jog_speed(&mut rig), 100, "not executed");
             }
-            Kind::Echo => {
+            FaultKind::Echo => {
                 assert_eq!(ask(&mut rig("echo"), READ), [frame(READ), whole].concat());
                 let mut rig = rig("echo");
                 let broadcast = rtu::encode(0, WRITE);
                 assert_eq!(rig.send(&broadcast), broadcast.to_vec());
                 assert_eq!(jog_speed(&mut rig), 7, "executed");
             }
-            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => {
+            FaultKind::NoisyCable
+            | FaultKind::SleepyDrive
+            | FaultKind::UsbAdapter
+            | FaultKind::CrowdedLine => {
                 let mut rig = rig(kind.name());
                 (0..4000).for_each(|_| {
                     ask(&mut rig, READ);
@@ -154,9 +157,9 @@ fn a_broadcast_can_only_be_lost() {
     let broadcast = rtu::encode(0, WRITE);
     let mut rig = drive(&["bad_crc", "busy", "lose_request:count=1", "duplicate"]);
     assert_eq!(rig.send(&broadcast), SILENCE);
-    assert_eq!((jog_speed(&mut rig), mishaps(&rig)), (100, vec![Mishap::RequestLost]));
+    assert_eq!((jog_speed(&mut rig), effects(&rig)), (100, vec![FaultEffect::RequestLost]));
     assert_eq!(rig.send(&broadcast), SILENCE);
-    assert_eq!((jog_speed(&mut rig), mishaps(&rig).len()), (7, 1));
+    assert_eq!((jog_speed(&mut rig), effects(&rig).len()), (7, 1));
 }
 
 /// A drive sends what it has held back whether or not somebody speaks meanwhile.

@@ -1,7 +1,7 @@
 //! What the log for programs says about each kind; the log for people stands in docs/faults.md.
 
 use super::{READ, acme, ask, drive};
-use drivemu::fault::Kind;
+use drivemu::fault::FaultKind;
 use drivemu::log::json::object;
 use serde_json::{Value, json};
 
@@ -20,25 +20,28 @@ fn a_repeated_command_as_json() {
 
 #[test]
 fn each_kind_as_json() {
-    for &kind in Kind::ALL {
+    for &kind in FaultKind::ALL {
         let (spec, mut want) = match kind {
-            Kind::FlipBits => ("flip_bits:bits=2", json!({"bits": 2})),
-            Kind::Truncate => ("truncate:bytes=3", json!({"bytes": 3})),
-            Kind::Extra => ("extra:bytes=2", json!({"bytes": 2})),
-            Kind::Garbage => ("garbage", json!({"bytes": 1})),
-            Kind::Delay => ("delay:ms=200", json!({"ms": 200.0})),
-            Kind::Split => ("split:at=3,gap_ms=50", json!({"at": 3, "gap_ms": 50})),
-            Kind::WrongUnit => ("wrong_unit", json!({"to": 2})),
-            Kind::WrongFunction => ("wrong_function:to=6", json!({"to": 6})),
-            Kind::Exception => ("exception:code=4", json!({"code": 4})),
-            Kind::LoseRequest
-            | Kind::LoseReply
-            | Kind::BadCrc
-            | Kind::Late
-            | Kind::Duplicate
-            | Kind::Busy
-            | Kind::Echo => (kind.name(), json!({})),
-            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => continue,
+            FaultKind::FlipBits => ("flip_bits:bits=2", json!({"bits": 2})),
+            FaultKind::Truncate => ("truncate:bytes=3", json!({"bytes": 3})),
+            FaultKind::Extra => ("extra:bytes=2", json!({"bytes": 2})),
+            FaultKind::Garbage => ("garbage", json!({"bytes": 1})),
+            FaultKind::Delay => ("delay:ms=200", json!({"ms": 200.0})),
+            FaultKind::Split => ("split:at=3,gap_ms=50", json!({"at": 3, "gap_ms": 50})),
+            FaultKind::WrongUnit => ("wrong_unit", json!({"to": 2})),
+            FaultKind::WrongFunction => ("wrong_function:to=6", json!({"to": 6})),
+            FaultKind::Exception => ("exception:code=4", json!({"code": 4})),
+            FaultKind::LoseRequest
+            | FaultKind::LoseReply
+            | FaultKind::BadCrc
+            | FaultKind::Late
+            | FaultKind::Duplicate
+            | FaultKind::Busy
+            | FaultKind::Echo => (kind.name(), json!({})),
+            FaultKind::NoisyCable
+            | FaultKind::SleepyDrive
+            | FaultKind::UsbAdapter
+            | FaultKind::CrowdedLine => continue,
         };
         let mut rig = drive(&[spec]);
         ask(&mut rig, READ);

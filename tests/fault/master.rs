@@ -1,7 +1,7 @@
 //! A master that nobody here wrote notices each kind, under a paused clock: tokio-modbus.
 
 use super::{drive, drive_of};
-use drivemu::fault::Kind;
+use drivemu::fault::FaultKind;
 use drivemu::testkit::live;
 use std::time::Duration;
 use tokio_modbus::client::{Context, rtu};
@@ -83,30 +83,33 @@ async fn a_stubborn_master_moves_twice_and_is_told_on() {
 
 #[tokio::test(start_paused = true)]
 async fn a_master_notices_each_kind() {
-    for &kind in Kind::ALL {
+    for &kind in FaultKind::ALL {
         let busy = Seen::Exception(ExceptionCode::ServerDeviceBusy);
         let (spec, want) = match kind {
-            Kind::LoseRequest => ("lose_request:count=1", [Seen::Silence, Seen::Value]),
-            Kind::LoseReply => ("lose_reply:count=1", [Seen::Silence, Seen::Value]),
-            Kind::BadCrc => ("bad_crc:count=1", [Seen::Silence, Seen::Value]),
-            Kind::FlipBits => ("flip_bits:count=1", [Seen::Silence, Seen::Value]),
-            Kind::Truncate => ("truncate:count=1", [Seen::Silence, Seen::Value]),
-            Kind::Extra => ("extra:count=1,bytes=9", [Seen::Value, Seen::Value]),
-            Kind::Garbage => ("garbage:count=1", [Seen::Value, Seen::Value]),
-            Kind::Delay => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
-            Kind::Late => ("late:count=1", [Seen::Silence, Seen::Value]),
-            Kind::Duplicate => ("duplicate:count=1", [Seen::Value, Seen::Value]),
-            Kind::Split => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
-            Kind::WrongUnit => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),
-            Kind::WrongFunction => ("wrong_function:count=1", [Seen::Bad, Seen::Value]),
-            Kind::Exception => {
+            FaultKind::LoseRequest => ("lose_request:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::LoseReply => ("lose_reply:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::BadCrc => ("bad_crc:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::FlipBits => ("flip_bits:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::Truncate => ("truncate:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::Extra => ("extra:count=1,bytes=9", [Seen::Value, Seen::Value]),
+            FaultKind::Garbage => ("garbage:count=1", [Seen::Value, Seen::Value]),
+            FaultKind::Delay => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
+            FaultKind::Late => ("late:count=1", [Seen::Silence, Seen::Value]),
+            FaultKind::Duplicate => ("duplicate:count=1", [Seen::Value, Seen::Value]),
+            FaultKind::Split => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
+            FaultKind::WrongUnit => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),
+            FaultKind::WrongFunction => ("wrong_function:count=1", [Seen::Bad, Seen::Value]),
+            FaultKind::Exception => {
                 let device = Seen::Exception(ExceptionCode::ServerDeviceFailure);
                 ("exception:code=4,count=1", [device, Seen::Value])
             }
-            Kind::Busy => ("busy:count=1", [busy, Seen::Value]),
+            FaultKind::Busy => ("busy:count=1", [busy, Seen::Value]),
             // What is left over of the first spoils the second.
-            Kind::Echo => ("echo:count=1", [Seen::Bad, Seen::Bad]),
-            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => continue,
+            FaultKind::Echo => ("echo:count=1", [Seen::Bad, Seen::Bad]),
+            FaultKind::NoisyCable
+            | FaultKind::SleepyDrive
+            | FaultKind::UsbAdapter
+            | FaultKind::CrowdedLine => continue,
         };
         assert_eq!(two_looks(spec).await, want, "{spec}");
     }

@@ -5,7 +5,7 @@ use crate::documents::fenced;
 use crate::expect::{read, root};
 use crate::kit::{Files, bench_line, line_of, text_of};
 use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
-use drivemu::fault::Kind;
+use drivemu::fault::FaultKind;
 use drivemu::fault::raw::KEYS;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
@@ -22,7 +22,7 @@ fn table(title: &str) -> Vec<Vec<String>> {
 #[test]
 fn each_kind_does_what_the_page_says() {
     let rows = table("Kinds");
-    let kinds = Kind::ALL.iter().filter(|kind| kind.preset().is_none());
+    let kinds = FaultKind::ALL.iter().filter(|kind| kind.preset().is_none());
     for (kind, row) in kinds.clone().zip(&rows) {
         let [name, _, keys, example, log] = row.as_slice() else { panic!("{row:?}") };
         assert_eq!((name.as_str(), keys), (kind.name(), &kind.keys().join(" ")));
@@ -53,16 +53,19 @@ fn each_key_has_an_example() {
 #[test]
 fn presets_have_the_numbers_of_the_page() {
     let page = read(&root("docs/faults.md"));
-    for kind in Kind::ALL {
+    for kind in FaultKind::ALL {
         let Some(specs) = kind.preset() else { continue };
         let intro = format!("\n`{}`, ", kind.name());
         let (_, rest) = page.split_once(&intro).expect("a preset of the page");
         let items = rest.lines().skip(2).map_while(|line| line.strip_prefix("- "));
         let items = items.map(|it| it.replace('`', ""));
-        let (habits, rules): (Vec<_>, Vec<_>) = items.partition(|it| it.contains(": "));
+        let (line_behaviour, rules): (Vec<_>, Vec<_>) = items.partition(|it| it.contains(": "));
         assert_eq!(rules, specs);
-        let line = format!("pty: auto, drives: [{{model: hcfa-x}}], {}", habits.join(", "));
-        assert_eq!(bench_line(&format!("lines: [{{{line}}}]")).habits, kind.habits());
+        let line = format!("pty: auto, drives: [{{model: hcfa-x}}], {}", line_behaviour.join(", "));
+        assert_eq!(
+            bench_line(&format!("lines: [{{{line}}}]")).line_behaviour,
+            kind.line_behaviour()
+        );
     }
 }
 
@@ -75,7 +78,10 @@ fn examples_work() {
     let bench = &fenced(&page, "yaml")[0];
     let bench = parse(bench, &BuiltinLibrary);
     let bench = bench.unwrap_or_else(|problems| panic!("{}", problems[0]));
-    assert_eq!(bench.lines[0].faults.len(), 3 + Kind::NoisyCable.preset().map_or(0, <[_]>::len));
+    assert_eq!(
+        bench.lines[0].faults.len(),
+        3 + FaultKind::NoisyCable.preset().map_or(0, <[_]>::len)
+    );
     let consoles = fenced(&page, "console");
     let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
     let readme = fenced(&read(&root("README.md")), "console");

@@ -3,10 +3,10 @@
 use super::{SILENCE, acme, ask, drive_of, frame};
 use drivemu::bus::Command;
 use drivemu::event::{Change, DriveId, Event, What};
-use drivemu::fault::Kind;
+use drivemu::fault::FaultKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
-use drivemu::words::{Action, AlarmCause, Word};
+use drivemu::vocabulary::{Action, AlarmCause, Named};
 
 /// A stepper's relative move by 1000 counts, which takes 1 s and a half.
 const DISTANCE: &[u8] = &[0x10, 0, 0x24, 0, 2, 4, 0, 0, 0x03, 0xE8];
@@ -64,25 +64,28 @@ fn an_order_that_was_lost_itself_does_not() {
 /// A kind that is not held against here does not compile.
 #[test]
 fn each_kind_lets_the_answer_arrive_or_not() {
-    for &kind in Kind::ALL {
+    for &kind in FaultKind::ALL {
         let (spec, want) = match kind {
-            Kind::Delay => ("delay:ms=6000", 1),
-            Kind::Split => ("split:gap_ms=6000", 1),
-            Kind::LoseReply
-            | Kind::BadCrc
-            | Kind::FlipBits
-            | Kind::Truncate
-            | Kind::Late
-            | Kind::WrongUnit
-            | Kind::WrongFunction => (kind.name(), 1),
-            Kind::Exception => ("exception:code=4", 0),
-            Kind::LoseRequest
-            | Kind::Extra
-            | Kind::Garbage
-            | Kind::Duplicate
-            | Kind::Busy
-            | Kind::Echo => (kind.name(), 0),
-            Kind::NoisyCable | Kind::SleepyDrive | Kind::UsbAdapter | Kind::CrowdedLine => continue,
+            FaultKind::Delay => ("delay:ms=6000", 1),
+            FaultKind::Split => ("split:gap_ms=6000", 1),
+            FaultKind::LoseReply
+            | FaultKind::BadCrc
+            | FaultKind::FlipBits
+            | FaultKind::Truncate
+            | FaultKind::Late
+            | FaultKind::WrongUnit
+            | FaultKind::WrongFunction => (kind.name(), 1),
+            FaultKind::Exception => ("exception:code=4", 0),
+            FaultKind::LoseRequest
+            | FaultKind::Extra
+            | FaultKind::Garbage
+            | FaultKind::Duplicate
+            | FaultKind::Busy
+            | FaultKind::Echo => (kind.name(), 0),
+            FaultKind::NoisyCable
+            | FaultKind::SleepyDrive
+            | FaultKind::UsbAdapter
+            | FaultKind::CrowdedLine => continue,
         };
         let mut rig = stepper(&[spec]);
         twice(&mut rig, MOVE);

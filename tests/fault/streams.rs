@@ -1,10 +1,10 @@
 //! What is drawn depends on seed, line, rule and occurrence, and on nothing else.
 
-use super::{READ, ask, drive_of, mishaps};
+use super::{READ, ask, drive_of, effects};
 use crate::properties::traffic::{Piece, pieces};
 use drivemu::bus::WakeReason;
-use drivemu::event::{Mishap, What};
-use drivemu::fault::Kind;
+use drivemu::event::{FaultEffect, What};
+use drivemu::fault::FaultKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use proptest::prelude::*;
@@ -20,10 +20,10 @@ fn run(specs: &[&str], seed: u64, n: usize) -> (Rig, Vec<u8>) {
 }
 
 /// Which rule acted, each time that one did.
-fn acted(rig: &Rig, name: &str) -> Vec<(u64, Mishap)> {
+fn acted(rig: &Rig, name: &str) -> Vec<(u64, FaultEffect)> {
     let told = |event: &drivemu::event::Event| match event.what {
-        What::Fault { rule, mishap, .. } if rig.bus().faults().told(rule).0 == name => {
-            Some((event.at.as_nanos(), mishap))
+        What::Fault { rule, effect, .. } if rig.bus().faults().told(rule).0 == name => {
+            Some((event.at.as_nanos(), effect))
         }
         _ => None,
     };
@@ -36,7 +36,7 @@ fn a_probability_is_kept() {
     let sigma = (f64::from(n) * p * (1.0 - p)).sqrt();
     for seed in [0, 1, 7, u64::MAX] {
         let (rig, _) = run(&["lose_reply:probability=0.1"], seed, n as usize);
-        let off = mishaps(&rig).len() as f64 - f64::from(n) * p;
+        let off = effects(&rig).len() as f64 - f64::from(n) * p;
         assert!(off.abs() < 3.0 * sigma, "seed {seed}: off by {off}, sigma is {sigma}");
     }
 }
@@ -67,7 +67,7 @@ fn one_seed_one_run() {
     assert!(bytes == again && first.log() == second.log());
     let (_, other) = run(&specs, 43, 2000);
     assert!(bytes != other);
-    // Two lines of a bench have weather of their own.
+    // Two lines of a bench have fault rules of their own.
     let text = |name| {
         format!(
             "seed: 5\nlines:\n- name: {name}\n  pty: auto\n  drives: [{{model: hcfa-x}}]\n  \
@@ -84,16 +84,16 @@ fn one_seed_one_run() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
 
-    /// No traffic brings it down in any weather, what is held leaves, and the seed says it all.
+    /// No traffic brings it down under any faults, what is held leaves, and the seed says it all.
     #[test]
     fn any_traffic_in_any_weather(seed: u64, traffic in pieces(1..40)) {
-        let spec = |kind: &Kind| match kind {
-            Kind::Delay => "delay:ms=0-40,probability=0.1".to_owned(),
-            Kind::Exception => "exception:code=4,probability=0.1".to_owned(),
+        let spec = |kind: &FaultKind| match kind {
+            FaultKind::Delay => "delay:ms=0-40,probability=0.1".to_owned(),
+            FaultKind::Exception => "exception:code=4,probability=0.1".to_owned(),
             kind if kind.preset().is_some() => kind.name().to_owned(),
             kind => format!("{}:probability=0.1", kind.name()),
         };
-        let specs: Vec<_> = Kind::ALL.iter().map(spec).collect();
+        let specs: Vec<_> = FaultKind::ALL.iter().map(spec).collect();
         let specs: Vec<&str> = specs.iter().map(String::as_str).collect();
         let run = || {
             let mut rig = drive_of("yako-closed-loop", &specs, seed);

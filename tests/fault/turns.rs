@@ -1,8 +1,8 @@
 //! Whom a rule hits: conditions, turns, chance, order, and rules that come and go.
 
-use super::{ANSWER, READ, SILENCE, WRITE, acme, ask, drive, drive_of, frame, hits, mishaps};
+use super::{ANSWER, READ, SILENCE, WRITE, acme, ask, drive, drive_of, effects, frame, hits};
 use drivemu::bus::{Command, CommandError};
-use drivemu::event::Mishap;
+use drivemu::event::FaultEffect;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use drivemu::wire::rtu;
@@ -85,9 +85,9 @@ fn a_window_of_time() {
 fn the_first_rule_acts() {
     let mut rig = drive(&["busy:every=3", "lose_reply:every=2", "exception:code=4,every=6"]);
     (0..12).for_each(|_| drop(ask(&mut rig, READ)));
-    let busy = Mishap::Busy;
-    let lost = Mishap::ReplyLost;
-    assert_eq!(mishaps(&rig), [lost, busy, lost, busy, lost, busy, lost, busy]);
+    let busy = FaultEffect::Busy;
+    let lost = FaultEffect::ReplyLost;
+    assert_eq!(effects(&rig), [lost, busy, lost, busy, lost, busy, lost, busy]);
     assert_eq!((hits(&rig, "busy"), hits(&rig, "lose_reply")), (4, 4));
     assert_eq!(hits(&rig, "exception"), 0, "always another's turn");
 }

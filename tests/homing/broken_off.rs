@@ -6,7 +6,7 @@ use drivemu::bus::Command;
 use drivemu::event::{Change, DriveId, What};
 use drivemu::motion::{Machine, Zone};
 use drivemu::testkit::Rig;
-use drivemu::words::{AlarmCause, HomeEnd, Output, Quantity};
+use drivemu::vocabulary::{AlarmCause, HomeEnd, Output, Quantity};
 use std::time::Duration;
 
 const DRIVE: DriveId = DriveId(0);

@@ -7,7 +7,7 @@ use drivemu::event::{Change, Event, What};
 use drivemu::motion::{Index, Machine, Zone};
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
-use drivemu::words::{AlarmCause, HomeEnd, Output, Quantity, Then};
+use drivemu::vocabulary::{AlarmCause, HomeEnd, Output, Quantity, Then};
 use proptest::prelude::*;
 
 /// Farther than any axis gets.

@@ -8,7 +8,7 @@ use super::scene::{Scene, Setting, hcfa_x, k_series, scenes, yako};
 use super::{CLOSED, OPEN, config};
 use drivemu::event::{Change, What};
 use drivemu::time::Instant;
-use drivemu::words::Quantity;
+use drivemu::vocabulary::Quantity;
 use proptest::prelude::*;
 
 /// Parts of the way through a ramp or a stretch at which a master looks.

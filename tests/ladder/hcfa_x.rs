@@ -1,7 +1,7 @@
 //! HCFA X: the guide prints no codes, so these are the protocol's.
 
 use super::{Row, Table};
-use drivemu::words::Cause::{
+use drivemu::vocabulary::Cause::{
     Address, Function, Length, Quantity, Range, ReadOnly, SplitLong, State,
 };
 

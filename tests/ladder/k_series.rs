@@ -1,7 +1,7 @@
 //! K series: 6.3 prints the codes; the options let every cause be met.
 
 use super::{Row, Table};
-use drivemu::words::Cause::{Address, Function, Length, Quantity, Range, ReadOnly, WriteOnly};
+use drivemu::vocabulary::Cause::{Address, Function, Length, Quantity, Range, ReadOnly, WriteOnly};
 
 pub const TABLE: Table = Table {
     model: "k-series",

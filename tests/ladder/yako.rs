@@ -1,7 +1,7 @@
 //! YAKO: 3.4 prints codes of its own, and frames that fix their order.
 
 use super::{Row, Table};
-use drivemu::words::Cause::{
+use drivemu::vocabulary::Cause::{
     self, Address, AddressBeyond, Function, Length, Quantity, Range, ReadOnly, WriteOnly,
 };
 

@@ -6,8 +6,8 @@ use drivemu::bus::{Bus, LinkId};
 use drivemu::event::What;
 use drivemu::line::Framing;
 use drivemu::time::Instant;
+use drivemu::vocabulary::Cause;
 use drivemu::wire::mbap::encode;
-use drivemu::words::Cause;
 
 /// A port with a YAKO drive as unit 1 on it.
 fn port() -> (Bus, LinkId) {

@@ -8,13 +8,13 @@ mod replan;
 
 use super::goal::{Goal, Slope};
 use super::limits::limit;
-use super::{Motor, Phase, Stage};
+use super::{MotionReport, Motor, Phase};
 use crate::event::Ignored;
-use crate::motion::{Index, IndexPulse, Machine, Move, State, Trajectory, Way};
+use crate::motion::{CrossingDirection, Index, IndexPulse, Machine, Move, State, Trajectory};
 use crate::time::{Duration, Instant};
-use crate::words::{
-    Edge, HomeEnd, IndexRule, Input, Inputs, LimitRule, LimitSource, Method, OriginStop, Pace,
-    Step, Steps, Then, Until,
+use crate::vocabulary::{
+    HomeEnd, HomingStep, IndexRule, Input, Inputs, LimitRule, LimitSource, Method, OriginStop,
+    Pace, SignalEdge, Steps, Then, Until,
 };
 
 /// Everything that a homing goes by.
@@ -77,7 +77,7 @@ pub(super) struct Homing {
     at: usize,
     /// No step has been finished, and no limit met.
     fresh: bool,
-    doing: Doing,
+    doing: HomingState,
     /// The switches as the last look found them.
     seen: Inputs,
     /// The last index mark that ended a step.
@@ -88,7 +88,7 @@ pub(super) struct Homing {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Doing {
+enum HomingState {
     /// On the way; for an index pulse after an edge: has the edge come?
     Seeking { armed: bool },
     /// Slowing down before the next step.
@@ -119,33 +119,33 @@ pub(super) struct WaitsForIndex {
 }
 
 impl Homing {
-    fn step(&self) -> Option<Step> {
+    fn step(&self) -> Option<HomingStep> {
         self.steps.get(self.at)
     }
 
     /// The direction in which it goes, and whether it goes at all.
     fn heading(&self) -> Option<bool> {
         match self.doing {
-            Doing::Seeking { .. } => self.step().map(|step| step.forward),
-            Doing::Refining { forward } => Some(forward),
-            Doing::Ending if self.order.way != 0 => Some(self.order.way > 0),
-            Doing::Braking | Doing::Stuck | Doing::Ending => None,
+            HomingState::Seeking { .. } => self.step().map(|step| step.forward),
+            HomingState::Refining { forward } => Some(forward),
+            HomingState::Ending if self.order.way != 0 => Some(self.order.way > 0),
+            HomingState::Braking | HomingState::Stuck | HomingState::Ending => None,
         }
     }
 
     /// How fast it goes, in counts per second.
     fn speed(&self) -> f64 {
         match (self.doing, self.step().map(|step| step.pace)) {
-            (Doing::Seeking { .. }, Some(Pace::Fast)) => self.order.fast,
+            (HomingState::Seeking { .. }, Some(Pace::Fast)) => self.order.fast,
             _ => self.order.slow,
         }
     }
 
     pub(super) fn waits_for(&self) -> Waits {
-        let step = self.step().filter(|_| matches!(self.doing, Doing::Seeking { .. }));
+        let step = self.step().filter(|_| matches!(self.doing, HomingState::Seeking { .. }));
         let index = match (self.doing, step.map(|step| step.until)) {
-            (Doing::Refining { .. }, _) => true,
-            (Doing::Seeking { armed }, Some(Until::Index(_) | Until::SameIndex)) => armed,
+            (HomingState::Refining { .. }, _) => true,
+            (HomingState::Seeking { armed }, Some(Until::Index(_) | Until::SameIndex)) => armed,
             _ => false,
         };
         let marks = self.order.marks;
@@ -176,7 +176,7 @@ impl Motor {
             steps: order.method.steps,
             at: 0,
             fresh: true,
-            doing: Doing::Ending,
+            doing: HomingState::Ending,
             seen: Inputs::default(),
             mark: None,
             origin: 0,
@@ -202,16 +202,17 @@ impl Motor {
         let switches = self.home_switches(now, source);
         let Some(homing) = &mut self.homing else { return };
         let before = std::mem::replace(&mut homing.seen, switches);
-        let changed =
-            |edge: Edge| before.has(edge.signal) != edge.on && switches.has(edge.signal) == edge.on;
-        let armed = matches!(homing.doing, Doing::Seeking { armed: true });
-        let step = homing.step().filter(|_| matches!(homing.doing, Doing::Seeking { .. }));
+        let changed = |edge: SignalEdge| {
+            before.has(edge.signal) != edge.on && switches.has(edge.signal) == edge.on
+        };
+        let armed = matches!(homing.doing, HomingState::Seeking { armed: true });
+        let step = homing.step().filter(|_| matches!(homing.doing, HomingState::Seeking { .. }));
         match step.map(|step| step.until) {
             Some(Until::Edge(edge)) if changed(edge) => {
                 return self.home_found(now, self.position(now));
             }
             Some(Until::Index(Some(edge))) if changed(edge) && !armed => {
-                homing.doing = Doing::Seeking { armed: true };
+                homing.doing = HomingState::Seeking { armed: true };
                 self.look_ahead(now);
             }
             _ => {}
@@ -222,9 +223,9 @@ impl Motor {
     /// What the present step waits for is at `at`.
     pub(super) fn home_found(&mut self, now: Instant, at: i64) {
         let Some(homing) = &mut self.homing else { return };
-        if matches!(homing.doing, Doing::Refining { .. }) {
+        if matches!(homing.doing, HomingState::Refining { .. }) {
             homing.origin = at;
-            self.told.push_back(Stage::Refined(at));
+            self.told.push_back(MotionReport::Refined(at));
             return self.home_end(now);
         }
         let Some(step) = homing.step() else { return };
@@ -232,11 +233,11 @@ impl Motor {
         if matches!(step.until, Until::Index(_)) {
             homing.mark = Some(at);
         }
-        self.told.push_back(Stage::Finds(step, at));
+        self.told.push_back(MotionReport::Finds(step, at));
         match step.then {
             Then::Ramp => {
                 homing.at += 1;
-                homing.doing = Doing::Braking;
+                homing.doing = HomingState::Braking;
                 self.home_brake(now);
             }
             Then::Keep => {
@@ -254,15 +255,15 @@ impl Motor {
     pub(super) fn home_stands(&mut self, now: Instant) {
         let Some(homing) = &self.homing else { return };
         match homing.doing {
-            Doing::Braking => self.seek(now),
-            Doing::Ending => {
+            HomingState::Braking => self.seek(now),
+            HomingState::Ending => {
                 let origin = homing.origin;
                 self.homing = None;
                 self.arrived = true;
-                self.told.push_back(Stage::Homed(origin));
+                self.told.push_back(MotionReport::Homed(origin));
                 self.stand(now);
             }
-            Doing::Seeking { .. } | Doing::Stuck | Doing::Refining { .. } => {}
+            HomingState::Seeking { .. } | HomingState::Stuck | HomingState::Refining { .. } => {}
         }
     }
 
@@ -281,7 +282,7 @@ impl Motor {
         if let Some(homing) = self.homing.take() {
             self.goal = Goal::Stop(Slope::Rate(homing.order.slope()), 0.0);
             let forward = homing.heading().unwrap_or(self.forward);
-            self.told.push_back(Stage::Lost { why, forward, alarm });
+            self.told.push_back(MotionReport::Lost { why, forward, alarm });
         }
     }
 
@@ -294,11 +295,11 @@ impl Motor {
             return self.home_end(now);
         };
         let armed = matches!(step.until, Until::Index(None) | Until::SameIndex);
-        homing.doing = Doing::Seeking { armed };
+        homing.doing = HomingState::Seeking { armed };
         let speed = homing.speed();
         let source = homing.order.source;
         let speed = if step.forward { speed } else { -speed };
-        self.told.push_back(Stage::Seeks(step, speed));
+        self.told.push_back(MotionReport::Seeks(step, speed));
         self.home_go(now, self.state(now), speed);
         let seen = self.home_switches(now, source);
         if let Some(homing) = &mut self.homing {
@@ -316,14 +317,14 @@ impl Motor {
         if !homing.seen.has(ahead) {
             return;
         }
-        let edge = Edge { signal: ahead, on: true };
-        let seeking = matches!(homing.doing, Doing::Seeking { .. });
+        let edge = SignalEdge { signal: ahead, on: true };
+        let seeking = matches!(homing.doing, HomingState::Seeking { .. });
         match homing.step().map(|step| step.until) {
             // It stands there already.
             Some(Until::Edge(it)) if seeking && it == edge => return self.home_found(now, at),
             // It passes the limit, or has started there: the index pulse lies beyond.
             Some(Until::Index(Some(it))) if seeking && it == edge => {
-                homing.doing = Doing::Seeking { armed: true };
+                homing.doing = HomingState::Seeking { armed: true };
                 return self.look_ahead(now);
             }
             // It goes back to where it has just been.
@@ -344,8 +345,8 @@ impl Motor {
         if turns {
             (homing.steps, homing.at, homing.fresh) = (homing.order.method.at_limit, 0, false);
         }
-        homing.doing = if turns { Doing::Braking } else { Doing::Stuck };
-        self.told.push_back(Stage::FindsLimit { forward, turns, at });
+        homing.doing = if turns { HomingState::Braking } else { HomingState::Stuck };
+        self.told.push_back(MotionReport::FindsLimit { forward, turns, at });
         self.home_brake(now);
     }
 
@@ -360,9 +361,9 @@ impl Motor {
             IndexRule::Onward if method.index => onward,
             _ => return self.home_end(now),
         };
-        homing.doing = Doing::Refining { forward };
+        homing.doing = HomingState::Refining { forward };
         let (from, slow) = (State::at_rest(homing.origin as f64), homing.order.slow);
-        self.told.push_back(Stage::Refines { forward });
+        self.told.push_back(MotionReport::Refines { forward });
         self.home_go(now, from, if forward { slow } else { -slow });
         self.home_limit(now);
     }
@@ -371,7 +372,7 @@ impl Motor {
     fn home_end(&mut self, now: Instant) {
         let state = self.state(now);
         let Some(homing) = &mut self.homing else { return };
-        homing.doing = Doing::Ending;
+        homing.doing = HomingState::Ending;
         let HomeOrder { way, stop, .. } = homing.order;
         let origin = homing.origin;
         let from = match stop {
@@ -428,7 +429,8 @@ impl Motor {
 
     /// The next index mark that is passed and waited for.
     pub(super) fn next_index(&self, now: Instant, waits: WaitsForIndex) -> Option<IndexPulse> {
-        let way = if waits.forward { Way::Rising } else { Way::Falling };
+        let way =
+            if waits.forward { CrossingDirection::Rising } else { CrossingDirection::Falling };
         // While the axis turns round it may pass marks the other way.
         let after = self.trajectory.goes_at(way, now)?;
         let index = self.machine.index.or(Some(waits.marks));

@@ -2,11 +2,11 @@
 //! of them everything does.
 
 use super::goal::Goal;
-use super::{Motor, Phase, Stage};
+use super::{MotionReport, Motor, Phase};
 use crate::event::Ignored;
 use crate::motion::Trajectory;
 use crate::time::Instant;
-use crate::words::{Input, LimitStop};
+use crate::vocabulary::{Input, LimitStop};
 
 impl Motor {
     /// Is the axis at the limit in that direction?
@@ -43,7 +43,7 @@ impl Motor {
             return;
         }
         let soft = !self.wants.switches.has(limit(self.forward));
-        self.told.push_back(Stage::Limit { forward: self.forward, soft });
+        self.told.push_back(MotionReport::Limit { forward: self.forward, soft });
         self.stop_at_limit(now);
     }
 

@@ -2,7 +2,7 @@
 
 use super::goal::Goal;
 use super::{Motor, Phase};
-use crate::behaviour::phase::Stage;
+use crate::behaviour::phase::MotionReport;
 use crate::motion::{State, Trajectory};
 use crate::time::Instant;
 
@@ -47,7 +47,7 @@ impl Motor {
         self.paused = true;
         let trajectory = self.held_back(now, self.trajectory.state(now));
         self.go_on(now, trajectory);
-        self.told.push_back(Stage::Pauses);
+        self.told.push_back(MotionReport::Pauses);
     }
 
     /// The trajectory of a move that is held back, from a state of its command.
@@ -64,7 +64,7 @@ impl Motor {
         let from = self.trajectory.state(now);
         let trajectory = ramp.in_motion(from).reach(now, from, target);
         self.go_on(now, trajectory);
-        self.told.push_back(Stage::Resumes(target));
+        self.told.push_back(MotionReport::Resumes(target));
         self.obey_limits(now);
     }
 
@@ -74,7 +74,7 @@ impl Motor {
             self.goal = Goal::None;
             let trajectory = Trajectory::halt(now, self.state(now));
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(Stage::Stops);
+            self.told.push_back(MotionReport::Stops);
         }
     }
 
@@ -88,7 +88,7 @@ impl Motor {
             Phase::Moving | Phase::Stopping if moves || self.lag.makes_up() => {
                 self.goal = Goal::None;
                 self.begin(now, Trajectory::rest(now, here), Phase::Stopping);
-                self.told.extend(moves.then_some(Stage::Stops));
+                self.told.extend(moves.then_some(MotionReport::Stops));
             }
             // Less is a rounding error, or what is left of a lag that decays.
             _ if behind.abs() < LEAST => return,
@@ -104,6 +104,6 @@ impl Motor {
             self.look_at_switches(now);
         }
         let counts = behind.round() as i64;
-        self.told.extend((counts != 0).then_some(Stage::Clears(counts)));
+        self.told.extend((counts != 0).then_some(MotionReport::Clears(counts)));
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::behaviour::phase::Replan;
 use crate::motion::Switch;
-use crate::words::Input;
+use crate::vocabulary::Input;
 use proptest::prelude::*;
 
 const HOW: Ramp = Ramp {
@@ -16,7 +16,7 @@ const COAST: Duration = Duration::from_millis(200);
 
 /// Something that happens to an axis.
 #[derive(Debug, Clone, Copy)]
-enum Order {
+enum MotorOrder {
     Follow {
         power: bool,
         stop: bool,
@@ -46,33 +46,33 @@ fn ramp(speed: f64) -> Ramp {
 }
 
 /// Orders with the milliseconds before each; where `gentle`, none that changes the speed at once.
-fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, Order)>> {
+fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, MotorOrder)>> {
     let level = (prop::bool::weighted(0.8), prop::bool::weighted(0.2), any::<bool>(), -1..2i8);
     let follow = level.prop_map(move |(power, stop, quick_stop, jog)| {
         let quick_stop = quick_stop && stop && !gentle;
-        Order::Follow { power, stop, quick_stop, jog }
+        MotorOrder::Follow { power, stop, quick_stop, jog }
     });
     let order = prop_oneof![
         4 => follow,
-        3 => (-3000i64..3000, any::<bool>()).prop_map(|(target, interrupt)| Order::Move { target, interrupt }),
-        2 => (-4000.0..4000.0).prop_map(|speed| Order::Run { speed }),
+        3 => (-3000i64..3000, any::<bool>()).prop_map(|(target, interrupt)| MotorOrder::Move { target, interrupt }),
+        2 => (-4000.0..4000.0).prop_map(|speed| MotorOrder::Run { speed }),
         3 => (-4000.0..4000.0, 1e3..2e4, 1e4..2e4, -3000i64..3000).prop_map(|(speed, accel, decel, by)| {
             // Now and then the speed becomes 0.
             let speed = if f64::abs(speed) < 400.0 { 0.0 } else { speed };
-            Order::Tune { speed, accel, decel, by }
+            MotorOrder::Tune { speed, accel, decel, by }
         }),
-        1 => Just(Order::Stop),
-        1 => Just(if gentle { Order::Stop } else { Order::QuickStop }),
+        1 => Just(MotorOrder::Stop),
+        1 => Just(if gentle { MotorOrder::Stop } else { MotorOrder::QuickStop }),
     ];
     prop::collection::vec((0u64..900, order), 1..25)
 }
 
 /// An axis with a clock, as a drive keeps it.
-struct Bench {
+struct MotorBench {
     motor: Motor,
     wants: Wants,
     now: Instant,
-    told: Vec<(Instant, Stage)>,
+    told: Vec<(Instant, MotionReport)>,
     /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
     jump: f64,
     tuned: usize,
@@ -92,7 +92,7 @@ fn machines() -> impl Strategy<Value = Machine> {
     })
 }
 
-impl Bench {
+impl MotorBench {
     fn new(machine: Machine) -> Self {
         let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
         let wants = Wants { power: true, ..Wants::default() };
@@ -138,11 +138,11 @@ impl Bench {
         self.now = now;
     }
 
-    fn obey(&mut self, order: Order) {
+    fn obey(&mut self, order: MotorOrder) {
         let now = self.now;
         // Whether it may start is another test's.
         let _ = match order {
-            Order::Follow { power, stop, quick_stop, jog } => {
+            MotorOrder::Follow { power, stop, quick_stop, jog } => {
                 let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
                 let jog = jog.map(|ramp| {
                     let same = self.wants.jog.is_some_and(|before| before.ramp == ramp);
@@ -151,20 +151,20 @@ impl Bench {
                 self.wants = Wants { power, stop, quick_stop, jog, ..self.wants };
                 Ok(())
             }
-            Order::Move { target, interrupt } => {
+            MotorOrder::Move { target, interrupt } => {
                 self.motor.start_move(now, |here| here + target, HOW, interrupt)
             }
-            Order::Run { speed } => self.motor.start_run(now, ramp(speed), false),
-            Order::Tune { speed, accel, decel, by } => {
+            MotorOrder::Run { speed } => self.motor.start_run(now, ramp(speed), false),
+            MotorOrder::Tune { speed, accel, decel, by } => {
                 let (accel, decel) = (Slope::Rate(accel), Slope::Rate(decel));
                 self.tune(Ramp { speed, accel, decel, start_speed: 0.0 }, by);
                 Ok(())
             }
-            Order::Stop => {
+            MotorOrder::Stop => {
                 self.motor.stop(now);
                 Ok(())
             }
-            Order::QuickStop => {
+            MotorOrder::QuickStop => {
                 self.motor.quick_stop(now);
                 Ok(())
             }
@@ -174,7 +174,7 @@ impl Bench {
     }
 }
 
-impl Bench {
+impl MotorBench {
     /// The motion under way goes by `ramp`, and ends `by` counts from here if it ends anywhere.
     fn tune(&mut self, ramp: Ramp, by: i64) {
         let now = self.now;
@@ -211,13 +211,13 @@ impl Bench {
 /// The whole story, looked at every so many milliseconds.
 fn play(
     machine: Machine,
-    orders: &[(u64, Order)],
+    orders: &[(u64, MotorOrder)],
     step_ms: u64,
-    mut look: impl FnMut(&Bench),
-) -> Bench {
-    let mut bench = Bench::new(machine);
+    mut look: impl FnMut(&MotorBench),
+) -> MotorBench {
+    let mut bench = MotorBench::new(machine);
     let mut ms = 0;
-    let end = (3000, Order::Stop);
+    let end = (3000, MotorOrder::Stop);
     for (wait, order) in orders.iter().chain([&end]) {
         let until = ms + wait;
         while ms < until {
@@ -292,14 +292,14 @@ proptest! {
         machine in machines(), orders in orders(false), held: bool,
     ) {
         let mut bench = play(machine, &orders, u64::MAX / 2, |_| {});
-        bench.obey(Order::Follow { power: held, stop: held, quick_stop: false, jog: 1 });
+        bench.obey(MotorOrder::Follow { power: held, stop: held, quick_stop: false, jog: 1 });
         let at = bench.now + Duration::from_millis(500);
         bench.advance_to(at);
         prop_assert!(!bench.motor.is_moving());
         let (place, told) = (bench.motor.state(at), bench.told.len());
         for (wait, order) in orders {
             bench.advance_to(bench.now + Duration::from_millis(wait));
-            if !matches!(order, Order::Follow { .. }) {
+            if !matches!(order, MotorOrder::Follow { .. }) {
                 bench.obey(order);
             }
         }
@@ -311,22 +311,22 @@ proptest! {
 /// The property above would hold for an axis that never follows.
 #[test]
 fn settings_that_change_are_followed() {
-    let mut bench = Bench::new(Machine::default());
-    bench.obey(Order::Run { speed: 1000.0 });
+    let mut bench = MotorBench::new(Machine::default());
+    bench.obey(MotorOrder::Run { speed: 1000.0 });
     bench.advance_to(Instant::from_millis(500));
-    bench.obey(Order::Tune { speed: 2000.0, accel: 1e4, decel: 1e4, by: 0 });
+    bench.obey(MotorOrder::Tune { speed: 2000.0, accel: 1e4, decel: 1e4, by: 0 });
     bench.advance_to(Instant::from_millis(1000));
     assert_eq!(bench.motor.state(bench.now).speed, 2000.0);
     assert_eq!((bench.tuned, bench.jump), (1, 0.0));
-    assert!(bench.told.iter().any(|(_, it)| *it == Stage::Replans(Replan::Speed(2000.0))));
+    assert!(bench.told.iter().any(|(_, it)| *it == MotionReport::Replans(Replan::Speed(2000.0))));
 }
 
 #[test]
 fn says_why_it_does_not_start() {
     let start = |wants: Wants, running: bool| {
-        let mut bench = Bench::new(Machine::default());
+        let mut bench = MotorBench::new(Machine::default());
         if running {
-            bench.obey(Order::Run { speed: 1000.0 });
+            bench.obey(MotorOrder::Run { speed: 1000.0 });
         }
         bench.wants = wants;
         bench.follow();
@@ -343,8 +343,8 @@ fn says_why_it_does_not_start() {
 #[test]
 fn coasts_only_while_it_moves() {
     let coasts = |pause: bool, until: u64| {
-        let mut bench = Bench::new(Machine::default());
-        bench.obey(Order::Move { target: 2000, interrupt: false });
+        let mut bench = MotorBench::new(Machine::default());
+        bench.obey(MotorOrder::Move { target: 2000, interrupt: false });
         bench.advance_to(Instant::from_millis(300));
         bench.wants.pause = pause;
         bench.follow();
@@ -352,7 +352,7 @@ fn coasts_only_while_it_moves() {
         let held = bench.motor.phase() == Phase::Moving;
         bench.wants.power = false;
         bench.follow();
-        (held, bench.told.iter().any(|(_, it)| *it == Stage::Coasts))
+        (held, bench.told.iter().any(|(_, it)| *it == MotionReport::Coasts))
     };
     assert_eq!(coasts(false, 310), (true, true));
     assert_eq!(coasts(true, 2000), (true, false));

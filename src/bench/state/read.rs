@@ -29,21 +29,21 @@ struct Section {
 }
 
 #[derive(Deserialize)]
-struct RawFile {
+struct RawStateFile {
     format: u32,
     drives: Value,
 }
 
 #[derive(Deserialize)]
-struct RawDrive {
+struct RawSavedDrive {
     model: String,
     #[serde(default)]
     saves: u32,
-    rows: BTreeMap<String, RawRow>,
+    rows: BTreeMap<String, RawSavedRow>,
 }
 
 #[derive(Deserialize)]
-struct RawRow {
+struct RawSavedRow {
     value: i64,
     #[serde(default)]
     writes: u32,
@@ -63,7 +63,7 @@ impl Saved {
             return Err(vec![problem]);
         }
         let root = Path::root();
-        let raw: Option<RawFile> = section::read(&file, &root, KEYS, &mut problems);
+        let raw: Option<RawStateFile> = section::read(&file, &root, KEYS, &mut problems);
         let path = root.key("drives");
         let drives = raw.as_ref().map(|raw| &raw.drives);
         let left = section::entries(drives, &path, &mut problems).into_iter();
@@ -110,7 +110,7 @@ impl Saved {
 
     fn kept(&mut self, section: &Section, model: &Model) -> Option<Kept> {
         let Section { name, path, value } = section;
-        let raw: RawDrive = section::read(value, path, KEYS, &mut self.problems)?;
+        let raw: RawSavedDrive = section::read(value, path, KEYS, &mut self.problems)?;
         if raw.model != model.name {
             let (got, want) = (&raw.model, &model.name);
             let what = format!("{name} is {got} in this file and {want} in this run");
@@ -125,7 +125,7 @@ impl Saved {
         Some(Kept { rows, saves: raw.saves })
     }
 
-    fn row(&mut self, id: &str, raw: &RawRow, model: &Model, path: &Path) -> Option<KeptRow> {
+    fn row(&mut self, id: &str, raw: &RawSavedRow, model: &Model, path: &Path) -> Option<KeptRow> {
         let Some((row, of_map)) = model.map.rows().find(|(_, row)| row.id == id) else {
             let ids = model.map.rows().map(|(_, row)| row.id.as_str());
             let advice = suggest::did_you_mean(id, ids);
@@ -133,7 +133,7 @@ impl Saved {
             self.problems.push(Problem::key(path.clone(), what).advise_if(advice));
             return None;
         };
-        let RawRow { value, writes } = *raw;
+        let RawSavedRow { value, writes } = *raw;
         let computed = model.wiring.shows(row).is_some_and(|it| !matches!(it, Shows::PastAlarm(_)));
         if of_map.volatile || computed {
             let what = format!("{} is not kept over power-off", of_map.label());

@@ -91,11 +91,11 @@ pub struct RawMethod {
     /// The switch that decides where it begins: `home_switch`, `limit_pos` or `limit_neg`.
     pub by: Option<String>,
     /// The steps, where that switch is off at the start.
-    pub steps: Vec<RawStep>,
+    pub steps: Vec<RawHomingStep>,
     /// The steps that follow when the way of the first one ends at a limit instead.
-    pub at_limit: Vec<RawStep>,
+    pub at_limit: Vec<RawHomingStep>,
     /// The steps where the switch is on at the start.
-    pub on: Vec<RawStep>,
+    pub on: Vec<RawHomingStep>,
     /// Does `index` of the homing count for this method? Default no.
     pub index: bool,
 }
@@ -103,7 +103,7 @@ pub struct RawMethod {
 /// A homing step: go until something happens.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawStep {
+pub struct RawHomingStep {
     /// `pos` or `neg`.
     pub go: RawWay,
     /// `fast` or `slow`.

@@ -51,7 +51,7 @@ pub struct RawModel {
     pub registers: BTreeMap<String, RawRow>,
     /// Rows that repeat at a fixed stride, by name of the group.
     #[serde(default)]
-    pub repeats: BTreeMap<String, RawRepeat>,
+    pub repeats: BTreeMap<String, RawRowRepeat>,
     /// One-word rows for every address of a span that no other row takes, by name of the area.
     #[serde(default)]
     pub fill: BTreeMap<String, RawFill>,

@@ -155,7 +155,7 @@ pub enum RawOrder {
 /// leading zeros. A row's `at` is the address of the first copy.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawRepeat {
+pub struct RawRowRepeat {
     /// First and last number of a copy.
     pub n: [u16; 2],
     /// Distance from one copy to the next, in addresses.

@@ -60,7 +60,7 @@ pub struct RawChain {
     /// The row that says what a segment waits for. While it says nothing, the chain ends.
     pub rule: String,
     /// The conditions of a segment.
-    pub conditions: Vec<RawCondition>,
+    pub conditions: Vec<RawChainCondition>,
     /// Condition by code; any other code is none.
     pub codes: BTreeMap<u8, String>,
     /// Unit of a condition's value, by condition (`ms`, `1000 counts`).
@@ -78,7 +78,7 @@ pub struct RawChain {
 /// A condition of a segment.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawCondition {
+pub struct RawChainCondition {
     /// Which hex digit of the rule has its code, from the right, from 0.
     pub digit: u8,
     /// The row with its value.

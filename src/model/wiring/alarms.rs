@@ -6,7 +6,7 @@ use super::{AlarmStop, Shows};
 use crate::model::raw::{RawAlarmStop, RawModel};
 use crate::problem::{At, Path, Problem};
 use crate::units::{Dimension, Unit};
-use crate::words::{Action, AlarmCause, Input, Quantity, Setting, Word};
+use crate::vocabulary::{Action, AlarmCause, Input, Named, Quantity, Setting};
 
 impl Wirer<'_> {
     pub(super) fn alarm_history(&mut self, registers: &[String]) {

@@ -6,10 +6,10 @@ use super::{Counts, Gear, Number};
 use crate::model::raw::{RawAxis, RawCounts, RawGear, RawSegments};
 use crate::problem::{Path, Problem};
 use crate::units::{Dimension, Unit};
-use crate::words::{Action, HomeStarter, Input, Output, Quantity, Setting, Threshold, Word};
+use crate::vocabulary::{Action, HomeStarter, Input, Named, Output, Quantity, Setting, Threshold};
 
 /// A kind of motion: what it is called, what starts it, what it can't do without, what else it goes by.
-struct Kind {
+struct SettingKind {
     name: &'static str,
     inputs: &'static [Input],
     action: Option<Action>,
@@ -17,36 +17,36 @@ struct Kind {
     takes: &'static [Setting],
 }
 
-const KINDS: [Kind; 7] = [
-    Kind {
+const KINDS: [SettingKind; 7] = [
+    SettingKind {
         name: "run",
         inputs: &[Input::Run],
         action: Some(Action::RunStart),
         needs: &[Setting::RunSpeed],
         takes: &[Setting::RunStartSpeed, Setting::RunAccel, Setting::RunDecel],
     },
-    Kind {
+    SettingKind {
         name: "jog",
         inputs: &[Input::JogPos, Input::JogNeg],
         action: None,
         needs: &[Setting::JogSpeed],
         takes: &[Setting::JogAccel, Setting::JogDecel],
     },
-    Kind {
+    SettingKind {
         name: "jog by `inch_pos`",
         inputs: &[Input::InchPos, Input::InchNeg],
         action: None,
         needs: &[Setting::InchSpeed],
         takes: &[Setting::InchAccel, Setting::InchDecel],
     },
-    Kind {
+    SettingKind {
         name: "move",
         inputs: &[Input::MoveStart],
         action: Some(Action::MoveStart),
         needs: &[Setting::MoveTarget, Setting::MoveSpeed],
         takes: &[Setting::MoveStartSpeed, Setting::MoveAccel, Setting::MoveDecel],
     },
-    Kind {
+    SettingKind {
         name: "homing",
         inputs: &[Input::HomeStart],
         action: Some(Action::HomeStart),
@@ -61,14 +61,14 @@ const KINDS: [Kind; 7] = [
             Setting::HomeTimeLimit,
         ],
     },
-    Kind {
+    SettingKind {
         name: "move by input",
         inputs: &[Input::MoveStart],
         action: None,
         needs: &[],
         takes: &[Setting::MoveAbsolute],
     },
-    Kind {
+    SettingKind {
         name: "segment",
         inputs: &[Input::SegmentStart, Input::SegmentRun, Input::InterruptStart],
         action: None,
@@ -84,7 +84,7 @@ impl Wirer<'_> {
         let mut starter: Option<&str> = None;
         for kind in &KINDS {
             let by_input = kind.inputs.iter().find(|it| inputs.contains(it)).map(|it| it.name());
-            let by_action = kind.action.filter(|it| actions.contains(it)).map(Word::name);
+            let by_action = kind.action.filter(|it| actions.contains(it)).map(Named::name);
             let homes = kind.action == Some(Action::HomeStart) && self.homes_at_first_enable();
             let by = by_input.or(by_action).or(homes.then(|| HomeStarter::FirstEnable.name()));
             self.settings_fit(kind, by);
@@ -241,7 +241,7 @@ impl Wirer<'_> {
     }
 
     /// A motion that something starts has the settings it needs; one that nothing starts has none.
-    fn settings_fit(&mut self, kind: &Kind, by: Option<&str>) {
+    fn settings_fit(&mut self, kind: &SettingKind, by: Option<&str>) {
         let path = Path::root().key("quantities");
         for setting in kind.needs.iter().chain(kind.takes) {
             let wired = self.wiring.axis.setting(*setting).is_some();
@@ -282,7 +282,7 @@ impl Wirer<'_> {
         ];
         let ends = ends.into_iter().filter(|it| inputs.contains(it));
         let orders = [Action::Stop, Action::QuickStop].into_iter();
-        let orders = orders.filter(|it| actions.contains(it)).map(Word::name);
+        let orders = orders.filter(|it| actions.contains(it)).map(Named::name);
         let outputs = [
             Output::Moving,
             Output::InPosition,
@@ -300,8 +300,8 @@ impl Wirer<'_> {
             Output::EncoderB,
             Output::EncoderZ,
         ];
-        let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
-        let names: Vec<_> = ends.map(Word::name).chain(orders).chain(shown).collect();
+        let shown = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Named::name);
+        let names: Vec<_> = ends.map(Named::name).chain(orders).chain(shown).collect();
         names.into_iter().for_each(|name| self.without_motion(name, &path));
         let path = Path::root().key("quantities");
         for setting in [Setting::SoftLimitPos, Setting::SoftLimitNeg] {

@@ -5,7 +5,7 @@ use crate::model::expand::number;
 use crate::model::raw::RawChain;
 use crate::problem::{Path, Problem};
 use crate::units::{Dimension, Unit};
-use crate::words::{Condition, RowId, Word};
+use crate::vocabulary::{Condition, Named, RowId};
 
 /// What all segments of a chain have in common.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct ChainRules {
 
 /// How one segment gives way.
 #[derive(Debug)]
-pub struct Link {
+pub struct ChainLink {
     /// The row with the number of the next.
     pub next: RowId,
     /// The row with the rule.
@@ -33,7 +33,7 @@ pub struct Link {
     pub values: Vec<RowId>,
 }
 
-impl Link {
+impl ChainLink {
     /// Every row of it.
     pub(super) fn rows(&self) -> impl Iterator<Item = RowId> {
         [self.next, self.rule].into_iter().chain(self.values.iter().copied())
@@ -56,7 +56,7 @@ impl ChainRules {
     }
 
     pub(super) fn waits_for_a_step(&self) -> bool {
-        self.codes.iter().any(|(_, it)| *it == Condition::Step)
+        self.codes.iter().any(|(_, it)| *it == Condition::HomingStep)
     }
 }
 
@@ -132,7 +132,7 @@ impl Wirer<'_> {
         rules: &ChainRules,
         n: u16,
         path: &Path,
-    ) -> Option<Link> {
+    ) -> Option<ChainLink> {
         let next = self.row(&number(&raw.next, n), &path.key("next"));
         let rule = self.row(&number(&raw.rule, n), &path.key("rule"));
         rule.into_iter().for_each(|rule| self.one_word(rule, &path.key("rule")));
@@ -141,6 +141,6 @@ impl Wirer<'_> {
             let path = path.key("conditions").index(i).key("value");
             values.push(self.row(&number(&condition.value, n), &path)?);
         }
-        Some(Link { next: next?, rule: rule?, values })
+        Some(ChainLink { next: next?, rule: rule?, values })
     }
 }

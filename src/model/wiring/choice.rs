@@ -5,7 +5,7 @@ use crate::model::RowId;
 use crate::model::line::{Coded, code_in, coded, has_digit};
 use crate::model::raw::{RawChoice, RawChosen, RawDigit};
 use crate::problem::Path;
-use crate::words::Word;
+use crate::vocabulary::Named;
 use std::collections::BTreeMap;
 
 /// Always the same, or as a row says.
@@ -52,7 +52,7 @@ impl Digit {
 }
 
 impl Wirer<'_> {
-    pub(super) fn words_chosen<W: Word>(
+    pub(super) fn words_chosen<W: Named>(
         &mut self,
         raw: &Option<RawChoice<String>>,
         kind: &str,

@@ -2,8 +2,8 @@
 
 use super::not_simulated::split;
 use super::{
-    Alarm, AlarmStop, Hold, InputWords, Monitor, OutputWords, Reaction, Servo, Shows, Terminals,
-    Wiring,
+    Alarm, AlarmStop, HoldTime, InputWords, Monitor, OutputWords, Reaction, ServoWiring, Shows,
+    Terminals, Wiring,
 };
 use crate::model::raw::{
     RawAlarmStop, RawHold, RawInputs, RawLine, RawModel, RawOutputs, RawShows, RawTerminals,
@@ -12,8 +12,8 @@ use crate::model::rows::Compiled;
 use crate::problem::{At, Path, Problem};
 use crate::time::Duration;
 use crate::units::Dimension;
-use crate::words::RowId;
-use crate::words::{AlarmCause, Input, Taken};
+use crate::vocabulary::RowId;
+use crate::vocabulary::{AlarmCause, Input, Taken};
 
 pub(in crate::model) fn compile(
     raw: &RawModel,
@@ -157,7 +157,7 @@ impl Wirer<'_> {
                 }
             }
         }
-        self.claims(raw, &path.key("claims"));
+        self.bit_overrides(raw, &path.key("claims"));
         self.commands(&raw.commands, &path.key("commands"));
         self.triggers(&raw.triggers, &path.key("triggers"));
     }
@@ -246,7 +246,7 @@ impl Wirer<'_> {
         self.show(row, shows(kind), &path, At::Value);
     }
 
-    fn hold(&mut self, raw: &RawHold, path: &Path) -> Option<Hold> {
+    fn hold(&mut self, raw: &RawHold, path: &Path) -> Option<HoldTime> {
         let row = self.row(&raw.register, &path.key("register"))?;
         let unit = self.rows.map.row(row).unit;
         if unit.dimension != Dimension::Time {
@@ -255,13 +255,13 @@ impl Wirer<'_> {
             self.problems.push(problem.advise("give the row `unit: s` or `unit: ms`"));
         }
         let zero = self.duration(raw.zero.as_deref(), &path.key("zero"));
-        Some(Hold { row, unit, zero })
+        Some(HoldTime { row, unit, zero })
     }
 
     fn servo(&mut self, raw: &RawModel) {
         let path = Path::root().key("servo").key("ready_after");
         let ready_after = self.duration(raw.servo.ready_after.as_deref(), &path);
-        self.wiring.servo = Servo {
+        self.wiring.servo = ServoWiring {
             ready_after: ready_after.unwrap_or(Duration::ZERO),
             enabled_at_power_on: raw.servo.enabled_at_power_on,
         };

@@ -9,15 +9,15 @@ use crate::model::RowId;
 use crate::model::line::Coded;
 use crate::model::raw::{RawFinish, RawHoming, RawMethod};
 use crate::problem::{Path, Problem};
-use crate::words::{
-    AlarmCause, HomeStarter, IndexRule, Input, LimitRule, LimitSource, Method, OriginPosition,
-    OriginStop, Pace, Setting, Step, Until, Word,
+use crate::vocabulary::{
+    AlarmCause, HomeStarter, HomingStep, IndexRule, Input, LimitRule, LimitSource, Method, Named,
+    OriginPosition, OriginStop, Pace, Setting, Until,
 };
 use std::collections::BTreeMap;
 
 /// How the axis looks for its origin.
 #[derive(Debug)]
-pub struct Homing {
+pub struct HomingRules {
     /// The row with the number of the method; `None` where there is one.
     pub method: Option<RowId>,
     /// Methods by number.
@@ -38,7 +38,7 @@ pub struct Homing {
     pub time_factor: Option<Digit>,
 }
 
-impl Homing {
+impl HomingRules {
     /// The rows that it goes by, when it starts.
     pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
         let choices = [
@@ -78,7 +78,7 @@ impl Wirer<'_> {
             })
         });
         let source = &raw.limit_source;
-        self.wiring.homing = Some(Homing {
+        self.wiring.homing = Some(HomingRules {
             method: row,
             methods: BTreeMap::new(),
             starter,
@@ -162,9 +162,10 @@ impl Wirer<'_> {
     }
 
     /// A homing has the numbers that it goes by, and goes by those that it has.
-    fn homing_settings(&mut self, homing: &Homing, path: &Path) {
+    fn homing_settings(&mut self, homing: &HomingRules, path: &Path) {
         let methods = homing.methods.values();
-        let any = |test: fn(Step) -> bool| methods.clone().flat_map(Method::all_steps).any(test);
+        let any =
+            |test: fn(HomingStep) -> bool| methods.clone().flat_map(Method::all_steps).any(test);
         let finishes: Vec<Finish> = homing.finish.iter().flat_map(Choice::all).collect();
         let refined = methods.clone().any(|it| it.index);
         let goes = finishes.iter().any(|it| it.go);
@@ -229,7 +230,7 @@ fn keeps(position: OriginPosition) -> bool {
 }
 
 /// The defaults of what a file leaves out.
-impl Homing {
+impl HomingRules {
     /// What a limit means.
     pub const LIMIT: LimitRule = LimitRule::Turn;
     /// What tells of a limit.

@@ -6,18 +6,18 @@ use super::compile::Wirer;
 use super::segment_rows::MOVE;
 use crate::model::raw::{RawChoice, RawInterrupt};
 use crate::problem::{Path, Problem};
-use crate::words::{Input, InterruptRule, Output, RowId, Word};
+use crate::vocabulary::{Input, InterruptRule, Named, Output, RowId};
 
 /// A move that takes the place of a motion under way.
 #[derive(Debug)]
-pub struct Interrupt {
+pub struct InterruptWiring {
     /// The rows that it goes by.
     pub settings: Vec<SettingRow>,
     /// May it start?
     pub rule: Choice<InterruptRule>,
 }
 
-impl Interrupt {
+impl InterruptWiring {
     /// Every row of it.
     pub(super) fn rows(&self) -> impl Iterator<Item = RowId> {
         self.settings.iter().map(|it| it.row).chain(self.rule.row())
@@ -47,7 +47,7 @@ impl Wirer<'_> {
                 None => Some(Choice::Fixed(InterruptRule::Free)),
                 raw => self.words_chosen(raw, "rule for interrupt positioning", &path.key("rule")),
             };
-            self.wiring.axis.interrupt = rule.map(|rule| Interrupt { settings, rule });
+            self.wiring.axis.interrupt = rule.map(|rule| InterruptWiring { settings, rule });
         }
         let starts = inputs.contains(&Input::InterruptStart);
         if raw.is_some() && !starts {
@@ -56,9 +56,9 @@ impl Wirer<'_> {
                 .push(Problem::key(path.clone(), what).advise("wire it, or leave this out"));
         }
         let others = [Input::InterruptStart, Input::InterruptUnlock, Input::InterruptInhibit];
-        let others = others.into_iter().filter(|it| inputs.contains(it)).map(Word::name);
+        let others = others.into_iter().filter(|it| inputs.contains(it)).map(Named::name);
         let outputs = [Output::InterruptActive, Output::InterruptDone];
-        let outputs = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Word::name);
+        let outputs = outputs.into_iter().filter(|it| self.is_shown(*it)).map(Named::name);
         let names: Vec<_> = others.chain(outputs).collect();
         if raw.is_none() {
             for name in names {

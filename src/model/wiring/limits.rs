@@ -5,7 +5,9 @@ use super::compile::Wirer;
 use crate::model::RowId;
 use crate::model::raw::RawLimits;
 use crate::problem::{Path, Problem};
-use crate::words::{AlarmCause, Input, LimitStop, Output, Setting, SoftLimitRule, Threshold, Word};
+use crate::vocabulary::{
+    AlarmCause, Input, LimitStop, Named, Output, Setting, SoftLimitRule, Threshold,
+};
 
 /// What limits do.
 #[derive(Debug, Default)]

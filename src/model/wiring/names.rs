@@ -6,12 +6,12 @@ use super::{Reaction, Shown, Shows};
 use crate::model::{Access, RowId, duration};
 use crate::problem::{At, Path, Problem, suggest};
 use crate::time::Duration;
-use crate::words::{Output, Word};
+use crate::vocabulary::{Named, Output};
 use std::collections::BTreeMap;
 
 /// Words and rows by name.
 impl Wirer<'_> {
-    pub(super) fn word<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
+    pub(super) fn word<W: Named>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
         let found = W::parse(name);
         if found.is_none() {
             let all = W::ALL.iter().map(|word| word.name());
@@ -24,7 +24,7 @@ impl Wirer<'_> {
     }
 
     /// The word named by the key that ends `path`.
-    pub(super) fn word_key<W: Word>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
+    pub(super) fn word_key<W: Named>(&mut self, name: &str, kind: &str, path: &Path) -> Option<W> {
         let before = self.problems.len();
         let word = self.word(name, kind, path);
         self.problems[before..].iter_mut().for_each(|problem| problem.at = At::Key);

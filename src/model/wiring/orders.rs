@@ -1,10 +1,10 @@
 //! Rows that set something off: values that are commands, and bits that are triggers.
 
 use super::compile::Wirer;
-use super::{Commands, Reaction, Triggers};
+use super::{CommandRows, Reaction, Triggers};
 use crate::model::raw::RawTriggers;
 use crate::problem::{At, Path, Problem};
-use crate::words::{Action, Modifier};
+use crate::vocabulary::{Action, Modifier};
 use std::collections::BTreeMap;
 
 impl Wirer<'_> {
@@ -24,7 +24,7 @@ impl Wirer<'_> {
             }
             let index = self.wiring.commands.len() as u16;
             self.react(row, Reaction::Command(index), &path, At::Key);
-            self.wiring.commands.push(Commands { row, actions });
+            self.wiring.commands.push(CommandRows { row, actions });
         }
     }
 

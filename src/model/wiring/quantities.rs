@@ -6,7 +6,7 @@ use crate::model::raw::{RawModel, RawQuantity};
 use crate::model::{Applies, RowId};
 use crate::problem::{At, Path, Problem, suggest};
 use crate::units::{Dimension, Unit};
-use crate::words::{Quantity, Setting, Taken, Threshold, Word};
+use crate::vocabulary::{Named, Quantity, Setting, Taken, Threshold};
 
 impl Wirer<'_> {
     pub(super) fn quantities(&mut self, raw: &RawModel) {

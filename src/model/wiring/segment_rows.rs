@@ -10,7 +10,7 @@ use crate::model::raw::{
     RawChoice, RawChosen, RawPositionSegments, RawQuantity, RawSegments, RawVelocitySegments,
 };
 use crate::problem::{Path, Problem, suggest};
-use crate::words::{Input, Lasts, Setting, Target, Word};
+use crate::vocabulary::{Input, Lasts, Named, Setting, Target};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 

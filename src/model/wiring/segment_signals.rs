@@ -5,7 +5,7 @@ use super::chain::ChainRules;
 use super::compile::Wirer;
 use crate::model::raw::RawSegments;
 use crate::problem::{Path, Problem};
-use crate::words::{Input, Output, Quantity, Word};
+use crate::vocabulary::{Input, Named, Output, Quantity};
 
 /// The bits of the selection, lowest first.
 pub(super) const SELECTS: [Input; 4] =

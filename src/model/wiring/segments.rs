@@ -1,9 +1,9 @@
 //! Motions by number, compiled: which rows each segment goes by.
 
 use super::SettingRow;
-use super::chain::{ChainRules, Link};
+use super::chain::{ChainLink, ChainRules};
 use super::choice::Choice;
-use crate::words::{Lasts, RowId, Target};
+use crate::vocabulary::{Lasts, RowId, Target};
 
 /// Motions by number.
 #[derive(Debug, Default)]
@@ -33,7 +33,7 @@ pub struct PositionSegment {
     /// What its target is.
     pub kind: Choice<Target>,
     /// How it gives way to the next.
-    pub link: Option<Link>,
+    pub link: Option<ChainLink>,
 }
 
 /// Runs by number.
@@ -76,7 +76,7 @@ impl Segments {
     /// The rows of what is no number of a segment's motion: kinds, triggers and chains.
     pub fn rules(&self) -> impl Iterator<Item = RowId> {
         let moves = self.position.iter().flat_map(|it| &it.list).flat_map(|segment| {
-            let links = segment.link.iter().flat_map(Link::rows);
+            let links = segment.link.iter().flat_map(ChainLink::rows);
             segment.kind.row().into_iter().chain(links)
         });
         moves.chain(self.velocity.iter().filter_map(|it| it.trigger.row()))

@@ -4,7 +4,7 @@ use super::compile::Wirer;
 use super::{Number, Shows};
 use crate::problem::{Path, Problem};
 use crate::units::Unit;
-use crate::words::{Output, Quantity, Threshold, Word};
+use crate::vocabulary::{Named, Output, Quantity, Threshold};
 
 /// An output with the number that it goes by, and whether it can do without.
 const USES: [(Output, Threshold, bool); 20] = [

@@ -2,13 +2,13 @@
 
 use super::compile::Wirer;
 use crate::problem::{At, Path, Problem};
-use crate::words::{Output, Word};
+use crate::vocabulary::{Named, Output};
 
 impl Wirer<'_> {
     /// To be called when all that shows outputs is wired.
     pub(super) fn user_outputs(&mut self, register: Option<&str>, path: &Path) {
         let signals = [Output::User0, Output::User1, Output::User2];
-        let shown = signals.into_iter().find(|it| self.is_shown(*it)).map(Word::name);
+        let shown = signals.into_iter().find(|it| self.is_shown(*it)).map(Named::name);
         let at = path.key("user");
         match (register, shown) {
             (Some(_), None) => {

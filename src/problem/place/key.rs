@@ -7,7 +7,7 @@ use serde_yaml::Number;
 
 /// A map key, under the name a path has for it and as it is written.
 #[derive(Debug)]
-pub(super) enum Key {
+pub(super) enum YamlKey {
     Scalar {
         name: String,
         written: String,
@@ -16,7 +16,7 @@ pub(super) enum Key {
     Collection,
 }
 
-impl Key {
+impl YamlKey {
     /// The key written so; only a `plain` one (no quotes, no tag) can be a number.
     pub(super) fn new(written: String, plain: bool) -> Self {
         let number: Option<Number> = if plain { written.parse().ok() } else { None };

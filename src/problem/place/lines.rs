@@ -6,12 +6,12 @@ use super::super::Mark;
 
 /// The lines of one text, without their ends and without a byte order mark.
 pub(in crate::problem) struct Lines<'t> {
-    lines: Vec<Line<'t>>,
+    lines: Vec<TextLine<'t>>,
     /// The last line with text on it, from 1.
     last: usize,
 }
 
-struct Line<'t> {
+struct TextLine<'t> {
     text: &'t str,
     /// Characters up to the last one that is not blank; counted once, as every mark asks for it.
     length: usize,
@@ -24,11 +24,11 @@ impl<'t> Lines<'t> {
         let mut rest = text;
         // Not `str::lines`: for YAML a lone carriage return ends a line as well.
         while let Some(end) = rest.find(['\r', '\n']) {
-            lines.push(Line::new(&rest[..end]));
+            lines.push(TextLine::new(&rest[..end]));
             let width = if rest[end..].starts_with("\r\n") { 2 } else { 1 };
             rest = &rest[end + width..];
         }
-        lines.push(Line::new(rest));
+        lines.push(TextLine::new(rest));
         let last = lines.iter().rposition(|line| line.length > 0).map_or(1, |i| i + 1);
         Self { lines, last }
     }
@@ -55,7 +55,7 @@ impl<'t> Lines<'t> {
     }
 }
 
-impl<'t> Line<'t> {
+impl<'t> TextLine<'t> {
     fn new(text: &'t str) -> Self {
         Self { text, length: text.trim_end().chars().count() }
     }

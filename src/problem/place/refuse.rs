@@ -2,7 +2,7 @@
 //!
 //! Not here: a text that is no YAML at all (see [`syntax`](super::syntax)).
 
-use super::key::Key;
+use super::key::YamlKey;
 use super::{Mark, Path, Problem, Seg};
 use crate::problem::bounds::{self, DEPTH};
 use crate::text::is_control;
@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 /// Keys whose texts may have several lines; names have one.
 const PROSE: [&str; 4] = ["about", "assumed", "note", "why"];
 
-/// Line and spelling of the keys of one map so far, by name.
-pub(super) type Seen = BTreeMap<String, (usize, String)>;
+/// TextLine and spelling of the keys of one map so far, by name.
+pub(super) type SeenKeys = BTreeMap<String, (usize, String)>;
 
 /// An anchor or an alias: the reader would follow it, and paths could not tell its two places
 /// apart.
@@ -54,10 +54,10 @@ pub(super) fn length(what: &str, most: usize, unit: &str, mark: Mark) -> Problem
 }
 
 /// A key of the map at `path` that is there already or that can't be one; `None` for a good one.
-pub(super) fn key(key: &Key, path: &Path, mark: Mark, seen: &mut Seen) -> Option<Problem> {
+pub(super) fn key(key: &YamlKey, path: &Path, mark: Mark, seen: &mut SeenKeys) -> Option<Problem> {
     let problem = match key {
-        Key::Collection => Problem::value(path.clone(), "a key must be a word or a number"),
-        Key::Scalar { name, written } => {
+        YamlKey::Collection => Problem::value(path.clone(), "a key must be a word or a number"),
+        YamlKey::Scalar { name, written } => {
             let Some((line, first)) = seen.get(name) else {
                 seen.insert(name.clone(), (mark.line, written.clone()));
                 return None;

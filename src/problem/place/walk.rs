@@ -3,8 +3,8 @@
 //! Deliberately without recursion: the depth of a file is the author's choice, our stack is not.
 
 use super::lines::Lines;
-use super::refuse::{self, Seen};
-use super::{Entry, Key, Kind, Mark, Node, Path, Problem, syntax};
+use super::refuse::{self, SeenKeys};
+use super::{Mark, Node, NodeEntry, NodeKind, Path, Problem, YamlKey, syntax};
 use crate::problem::bounds;
 use saphyr_parser::{Event, Parser, ScalarStyle, ScanError, Span};
 
@@ -38,13 +38,13 @@ struct Walk<'t> {
     lines: Lines<'t>,
     root: Option<Node>,
     /// The collections that are open, outermost first.
-    stack: Vec<Frame>,
+    stack: Vec<WalkFrame>,
     /// Scalars, maps and lists so far.
     values: usize,
     problems: Vec<Problem>,
 }
 
-struct Frame {
+struct WalkFrame {
     path: Path,
     span: Span,
     /// The key that this collection is the value of.
@@ -54,10 +54,10 @@ struct Frame {
 
 enum Inside {
     Map {
-        entries: Vec<Entry>,
+        entries: Vec<NodeEntry>,
         /// A key whose value has not come yet.
-        pending: Option<(Key, Mark)>,
-        seen: Seen,
+        pending: Option<(YamlKey, Mark)>,
+        seen: SeenKeys,
     },
     List(Vec<Node>),
 }
@@ -77,15 +77,18 @@ impl Walk<'_> {
                 self.refuse_anchor(anchor, mark);
                 self.problems.extend(refuse::text(&text, &self.here(), mark));
                 let plain = style == ScalarStyle::Plain && tag.is_none();
-                self.add(Node { mark, kind: Kind::Leaf }, Key::new(text.into_owned(), plain));
+                self.add(
+                    Node { mark, kind: NodeKind::Leaf },
+                    YamlKey::new(text.into_owned(), plain),
+                );
             }
             Event::Alias(anchor) => {
                 let mark = self.span_mark(span);
                 self.refuse_anchor(anchor, mark);
-                self.add(Node { mark, kind: Kind::Leaf }, Key::Collection);
+                self.add(Node { mark, kind: NodeKind::Leaf }, YamlKey::Collection);
             }
             Event::MappingStart(anchor, _) => {
-                let (entries, pending, seen) = (vec![], None, Seen::new());
+                let (entries, pending, seen) = (vec![], None, SeenKeys::new());
                 return self.open(anchor, span, Inside::Map { entries, pending, seen });
             }
             Event::SequenceStart(anchor, _) => {
@@ -122,7 +125,7 @@ impl Walk<'_> {
         if self.stack.len() == bounds::DEPTH {
             return self.end(refuse::depth(self.here(), mark));
         }
-        self.stack.push(Frame { path: self.here(), span, owner: self.owner(), inside });
+        self.stack.push(WalkFrame { path: self.here(), span, owner: self.owner(), inside });
         true
     }
 
@@ -142,22 +145,22 @@ impl Walk<'_> {
             _ => self.lines.mark(line, start, 1),
         };
         let kind = match frame.inside {
-            Inside::Map { entries, .. } => Kind::Map(entries),
-            Inside::List(items) => Kind::List(items),
+            Inside::Map { entries, .. } => NodeKind::Map(entries),
+            Inside::List(items) => NodeKind::List(items),
         };
-        self.add(Node { mark, kind }, Key::Collection);
+        self.add(Node { mark, kind }, YamlKey::Collection);
     }
 
     /// Puts a finished node where it belongs; `key` is what it would be as a map key.
-    fn add(&mut self, node: Node, key: Key) {
-        let Some(Frame { path, inside, .. }) = self.stack.last_mut() else {
+    fn add(&mut self, node: Node, key: YamlKey) {
+        let Some(WalkFrame { path, inside, .. }) = self.stack.last_mut() else {
             self.root = Some(node);
             return;
         };
         match inside {
             Inside::List(items) => items.push(node),
             Inside::Map { entries, pending, seen } => match pending.take() {
-                Some((key, mark)) => entries.push(Entry { key, mark, value: node }),
+                Some((key, mark)) => entries.push(NodeEntry { key, mark, value: node }),
                 None => {
                     self.problems.extend(refuse::key(&key, path, node.mark, seen));
                     *pending = Some((key, node.mark));
@@ -170,9 +173,9 @@ impl Walk<'_> {
     fn here(&self) -> Path {
         match self.stack.last() {
             None => Path::root(),
-            Some(Frame { path, inside: Inside::List(items), .. }) => path.index(items.len()),
-            Some(Frame { path, inside: Inside::Map { pending, .. }, .. }) => match pending {
-                Some((Key::Scalar { name, .. }, _)) => path.key(name),
+            Some(WalkFrame { path, inside: Inside::List(items), .. }) => path.index(items.len()),
+            Some(WalkFrame { path, inside: Inside::Map { pending, .. }, .. }) => match pending {
+                Some((YamlKey::Scalar { name, .. }, _)) => path.key(name),
                 _ => path.clone(),
             },
         }
@@ -240,9 +243,9 @@ mod tests {
     fn marks(node: &Node, into: &mut Vec<Mark>) {
         into.push(node.mark);
         match &node.kind {
-            Kind::Leaf => {}
-            Kind::List(items) => items.iter().for_each(|node| marks(node, into)),
-            Kind::Map(entries) => entries.iter().for_each(|entry| {
+            NodeKind::Leaf => {}
+            NodeKind::List(items) => items.iter().for_each(|node| marks(node, into)),
+            NodeKind::Map(entries) => entries.iter().for_each(|entry| {
                 into.push(entry.mark);
                 marks(&entry.value, into);
             }),

@@ -1,52 +1,57 @@
 //! Plays a transcript against drives under the virtual clock.
 
-use super::Failure;
-use super::script::{Check, DriveLine, Script, Step};
+use super::TranscriptFailure;
+use super::script::{Check, DriveLine, Script, TranscriptStep};
 use crate::bench::{
     BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, machine, match_line,
 };
 use crate::bus::Command;
 use crate::drive::Drive;
 use crate::event::DriveId;
-use crate::fault::Habits;
-use crate::scenario::Order;
+use crate::fault::LineBehaviour;
+use crate::scenario::DriveOrder;
 use crate::testkit::{Rig, to_hex};
 use crate::units::parse_integer;
+use crate::vocabulary::{Named, Output, Quantity};
 use crate::wire::{ascii, rtu};
-use crate::words::{Output, Quantity, Word};
 
 /// Plays the transcript in `text`.
 ///
 /// # Errors
 /// The first line that did not come out as it says, with the log.
-pub fn run(text: &str, library: &dyn Library) -> Result<(), Failure> {
+pub fn run(text: &str, library: &dyn Library) -> Result<(), TranscriptFailure> {
     let script = Script::parse(text)?;
     let line = line(&script, library)?;
-    let mut player = Player { rig: Rig::line(line), pending: None, told: 0 };
+    let mut player = TranscriptPlayer { rig: Rig::line(line), pending: None, told: 0 };
     for (number, step) in &script.steps {
         let played = player.settle(step).and_then(|()| player.play(step));
         played.map_err(|what| player.failure(*number, what))?;
     }
     let last = script.steps.last().map_or(1, |(number, _)| *number);
-    player.settle(&Step::Log(String::new())).map_err(|what| player.failure(last, what))
+    player.settle(&TranscriptStep::Log(String::new())).map_err(|what| player.failure(last, what))
 }
 
-fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, Failure> {
+fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, TranscriptFailure> {
     let mut devices = Vec::new();
     for drive in &script.drives {
-        devices.push(device(drive, library).map_err(|what| Failure { line: drive.line, what })?);
+        devices.push(
+            device(drive, library).map_err(|what| TranscriptFailure { line: drive.line, what })?,
+        );
     }
     let wire = WireSpec::of(&devices, script.settings, script.ascii, script.strict);
     for (device, drive) in devices.iter_mut().zip(&script.drives) {
         let matched = match_line(device, wire.mode, true);
-        matched.map_err(|what| Failure { line: drive.line, what })?;
+        matched.map_err(|what| TranscriptFailure { line: drive.line, what })?;
     }
     let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    let habits = Habits::default();
-    let mut line = BenchLine { name, port, wire, devices, faults, habits };
+    let line_behaviour = LineBehaviour::default();
+    let mut line = BenchLine { name, port, wire, devices, faults, line_behaviour };
     for (number, spec) in &script.faults {
         let added = line.add_fault(spec);
-        added.map_err(|problems| Failure { line: *number, what: problems[0].to_string() })?;
+        added.map_err(|problems| TranscriptFailure {
+            line: *number,
+            what: problems[0].to_string(),
+        })?;
     }
     Ok(line)
 }
@@ -66,7 +71,7 @@ fn device(drive: &DriveLine, library: &dyn Library) -> Result<Device, String> {
     Device::new(model, &spec).map_err(|problems| problems[0].what.clone())
 }
 
-struct Player {
+struct TranscriptPlayer {
     rig: Rig,
     /// A request whose answer has not been looked at: what was asked and what came.
     pending: Option<(Option<Vec<u8>>, Vec<u8>)>,
@@ -74,10 +79,10 @@ struct Player {
     told: usize,
 }
 
-impl Player {
+impl TranscriptPlayer {
     /// An answer that no step looks at must be an echo, or silence to a broadcast.
-    fn settle(&mut self, next: &Step) -> Result<(), String> {
-        if matches!(next, Step::Answer(_) | Step::Bytes(_)) {
+    fn settle(&mut self, next: &TranscriptStep) -> Result<(), String> {
+        if matches!(next, TranscriptStep::Answer(_) | TranscriptStep::Bytes(_)) {
             return Ok(());
         }
         match self.pending.take() {
@@ -86,9 +91,9 @@ impl Player {
         }
     }
 
-    fn play(&mut self, step: &Step) -> Result<(), String> {
+    fn play(&mut self, step: &TranscriptStep) -> Result<(), String> {
         match step {
-            Step::Ask(unit, pdu) => {
+            TranscriptStep::Ask(unit, pdu) => {
                 let unit = unit.unwrap_or_else(|| self.rig.drive().unit());
                 let frame = self.frame(unit, pdu);
                 let got = self.rig.send(&frame);
@@ -96,26 +101,26 @@ impl Player {
                     if unit == crate::wire::BROADCAST { Vec::new() } else { self.echo(unit, pdu) };
                 self.pending = Some((Some(echo), got));
             }
-            Step::Send(bytes) => {
+            TranscriptStep::Send(bytes) => {
                 let got = self.rig.send(bytes);
                 self.pending = Some((None, got));
             }
-            Step::Answer(want) => {
+            TranscriptStep::Answer(want) => {
                 let got = self.take_answer()?;
                 let unit = if self.ascii() { ascii_unit(&got) } else { got.first().copied() };
                 let frame = |pdu: &Vec<u8>| self.frame(unit.unwrap_or(0), pdu);
                 same(want.as_ref().map(frame).unwrap_or_default(), got)?;
             }
-            Step::Bytes(want) => {
+            TranscriptStep::Bytes(want) => {
                 let got = self.take_answer()?;
                 same(want.clone().unwrap_or_default(), got)?;
             }
             // What comes meanwhile is looked at like an answer: nothing, unless the next line says otherwise.
-            Step::Wait(by) => {
+            TranscriptStep::Wait(by) => {
                 let got = self.rig.advance(*by);
                 self.pending = Some((Some(Vec::new()), got));
             }
-            Step::Look(unit, checks) => {
+            TranscriptStep::Look(unit, checks) => {
                 let drive = match unit {
                     None => self.rig.drive(),
                     Some(unit) => {
@@ -124,8 +129,8 @@ impl Player {
                 };
                 checks.iter().try_for_each(|check| look(drive, check))?;
             }
-            Step::Do(words) => self.act(words)?,
-            Step::Log(want) => {
+            TranscriptStep::Do(words) => self.act(words)?,
+            TranscriptStep::Log(want) => {
                 let new = self.rig.log_from(self.told);
                 let says = |line: &str| line.contains(want.as_str());
                 let at = new.lines().position(says).ok_or_else(|| {
@@ -138,15 +143,15 @@ impl Player {
     }
 
     fn act(&mut self, words: &[String]) -> Result<(), String> {
-        let order = Order::parse(&words.join(" ")).map_err(|no| match no.advice {
+        let order = DriveOrder::parse(&words.join(" ")).map_err(|no| match no.advice {
             Some(advice) => format!("{} ({advice})", no.what),
             None => no.what,
         })?;
         let command = order.command(DriveId(0), self.rig.drive().model());
         let command = match (command.map_err(|no| no.what)?, order) {
             (Some(command), _) => command,
-            (None, Order::Fault(spec)) => return self.rig.add_fault(&spec),
-            (None, Order::NoFault(name)) => Command::RemoveFault(name),
+            (None, DriveOrder::Fault(spec)) => return self.rig.add_fault(&spec),
+            (None, DriveOrder::NoFault(name)) => Command::RemoveFault(name),
             (None, _) => return Ok(()),
         };
         self.rig.command(command).map_err(|error| error.to_string())
@@ -176,8 +181,8 @@ impl Player {
         }
     }
 
-    fn failure(&self, line: usize, what: String) -> Failure {
-        Failure { line, what: format!("{what}\n--- log\n{}", self.rig.log()) }
+    fn failure(&self, line: usize, what: String) -> TranscriptFailure {
+        TranscriptFailure { line, what: format!("{what}\n--- log\n{}", self.rig.log()) }
     }
 }
 

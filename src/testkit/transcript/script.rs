@@ -1,6 +1,6 @@
 //! The text of a transcript, line by line, as steps.
 
-use super::Failure;
+use super::TranscriptFailure;
 use crate::bench::raw::{KEYS, RawMachine};
 use crate::problem::{Path, Problem, section};
 use crate::serial::Settings;
@@ -23,7 +23,7 @@ pub struct Script {
     /// Fault rules in compact form, each with its line.
     pub faults: Vec<(usize, String)>,
     /// What happens, each with its line.
-    pub steps: Vec<(usize, Step)>,
+    pub steps: Vec<(usize, TranscriptStep)>,
 }
 
 /// A drive of a transcript.
@@ -49,12 +49,12 @@ pub struct DriveLine {
 
 /// One step.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Step {
+pub enum TranscriptStep {
     /// Ask a unit, by PDU; `None` is the first drive.
     Ask(Option<u8>, Vec<u8>),
     /// Send bytes as they are.
     Send(Vec<u8>),
-    /// The answer to the last [`Step::Ask`], by PDU; `None` is silence.
+    /// The answer to the last [`TranscriptStep::Ask`], by PDU; `None` is silence.
     Answer(Option<Vec<u8>>),
     /// The answer as bytes; `None` is silence.
     Bytes(Option<Vec<u8>>),
@@ -82,7 +82,7 @@ impl Script {
     ///
     /// # Errors
     /// The first line that is none of a transcript's.
-    pub fn parse(text: &str) -> Result<Self, Failure> {
+    pub fn parse(text: &str) -> Result<Self, TranscriptFailure> {
         let mut script = Self::default();
         for (i, line) in text.lines().enumerate() {
             let number = i + 1;
@@ -90,11 +90,11 @@ impl Script {
             if content.is_empty() {
                 continue;
             }
-            let fail = |what: String| Failure { line: number, what };
+            let fail = |what: String| TranscriptFailure { line: number, what };
             script.line(number, content).map_err(fail)?;
         }
         if script.drives.is_empty() {
-            return Err(Failure { line: 1, what: "no `model` line".into() });
+            return Err(TranscriptFailure { line: 1, what: "no `model` line".into() });
         }
         Ok(script)
     }
@@ -103,14 +103,16 @@ impl Script {
         let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
         let rest = rest.trim();
         let step = match word {
-            ">>" => Step::Send(bytes(rest)?),
-            "<<" => Step::Bytes(silence_or(rest, bytes)?),
-            "<" => Step::Answer(silence_or(rest, hex)?),
-            "+" => Step::Wait(parse_duration(rest).ok_or_else(|| format!("`{rest}` is no time"))?),
-            "!" => Step::Do(rest.split_whitespace().map(str::to_owned).collect()),
-            "log" => Step::Log(rest.to_owned()),
-            _ if word.starts_with('>') => Step::Ask(unit(&word[1..])?, hex(rest)?),
-            _ if word.starts_with('?') => Step::Look(unit(&word[1..])?, checks(rest)?),
+            ">>" => TranscriptStep::Send(bytes(rest)?),
+            "<<" => TranscriptStep::Bytes(silence_or(rest, bytes)?),
+            "<" => TranscriptStep::Answer(silence_or(rest, hex)?),
+            "+" => TranscriptStep::Wait(
+                parse_duration(rest).ok_or_else(|| format!("`{rest}` is no time"))?,
+            ),
+            "!" => TranscriptStep::Do(rest.split_whitespace().map(str::to_owned).collect()),
+            "log" => TranscriptStep::Log(rest.to_owned()),
+            _ if word.starts_with('>') => TranscriptStep::Ask(unit(&word[1..])?, hex(rest)?),
+            _ if word.starts_with('?') => TranscriptStep::Look(unit(&word[1..])?, checks(rest)?),
             _ => return self.header(number, word, rest),
         };
         self.steps.push((number, step));

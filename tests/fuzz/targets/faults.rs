@@ -19,15 +19,15 @@ static LINE: LazyLock<BenchLine> = LazyLock::new(|| {
 
 fuzz_target!(|input: &[u8]| {
     let Ok(spec) = std::str::from_utf8(input) else { return };
-    let weather = match LINE.fault(spec, &[]) {
-        Ok(weather) => weather,
+    let fault_set = match LINE.fault(spec, &[]) {
+        Ok(fault_set) => fault_set,
         Err(problems) => return common::render_all(&problems, spec),
     };
     let mut bus = LINE.bus(1);
     let link = bus.open(LINE.wire.framing(1.0));
-    let rules = weather.rules.into_iter().map(Command::AddFault);
-    for command in rules.chain([Command::SetHabits(weather.habits)]) {
-        bus.command(bus.now(), command).expect("weather that was read is possible");
+    let rules = fault_set.rules.into_iter().map(Command::AddFault);
+    for command in rules.chain([Command::SetLineBehaviour(fault_set.line_behaviour)]) {
+        bus.command(bus.now(), command).expect("a fault that was read is possible");
     }
     for pdu in [&[3, 3, 4, 0, 1][..], &[6, 3, 4, 0, 7], &[16, 8, 6, 0, 2, 4, 0, 0, 0, 1], &[0x2B]] {
         let now = bus.now() + Duration::from_secs(1);

@@ -1,8 +1,8 @@
 //! A homing under way that goes by another setting from now on.
 
-use super::{Doing, HomeOrder};
+use super::{HomeOrder, HomingState};
 use crate::behaviour::motor::Motor;
-use crate::behaviour::phase::{Replan, Stage};
+use crate::behaviour::phase::{MotionReport, Replan};
 use crate::motion::Trajectory;
 use crate::time::Instant;
 
@@ -22,12 +22,12 @@ impl Motor {
         let Some(homing) = &self.homing else { return };
         let accel = homing.order.slope();
         let trajectory = match (homing.doing, homing.heading()) {
-            (Doing::Seeking { .. } | Doing::Refining { .. }, Some(forward)) => {
+            (HomingState::Seeking { .. } | HomingState::Refining { .. }, Some(forward)) => {
                 let speed = homing.speed();
                 let speed = if forward { speed } else { -speed };
                 Trajectory::to_speed(now, from, speed, accel, accel)
             }
-            (Doing::Ending, Some(_)) => homing.order.onward(now, from, homing.origin),
+            (HomingState::Ending, Some(_)) => homing.order.onward(now, from, homing.origin),
             _ => Trajectory::stop(now, from, accel),
         };
         let source = homing.order.source;
@@ -52,11 +52,11 @@ impl Motor {
             told.push(Replan::Accel(order.slope()));
         }
         if before.way != order.way {
-            told.push(Replan::Way(order.way));
+            told.push(Replan::HomeOffset(order.way));
         }
         if before.time_limit != order.time_limit {
             told.push(Replan::TimeLimit(order.time_limit));
         }
-        self.told.extend(told.into_iter().map(Stage::Replans));
+        self.told.extend(told.into_iter().map(MotionReport::Replans));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::compile::Wirer;
 use crate::problem::{Path, Problem};
-use crate::words::{Action, HomeStarter, Input, Method, Output, Step, Word};
+use crate::vocabulary::{Action, HomeStarter, HomingStep, Input, Method, Named, Output};
 
 impl Wirer<'_> {
     /// A homing has a starter, a starter has a homing, and what shows or needs one has one.
@@ -21,7 +21,8 @@ impl Wirer<'_> {
             }
             return self.never_on(Output::HomeDone, "there is no `homing`");
         };
-        let looks = |step: Step| step.until.edge().is_some_and(|it| it.signal == Input::HomeSwitch);
+        let looks =
+            |step: HomingStep| step.until.edge().is_some_and(|it| it.signal == Input::HomeSwitch);
         let looked_for = homing.methods.values().flat_map(Method::all_steps).any(looks);
         if inputs.contains(&Input::HomeSwitch) && !looked_for {
             let what = "`home_switch` changes nothing: no homing step waits for it";

@@ -2,10 +2,11 @@
 
 use super::super::Choice;
 use super::super::compile::Wirer;
-use crate::model::raw::{RawMethod, RawStep, RawWay};
+use crate::model::raw::{RawHomingStep, RawMethod, RawWay};
 use crate::problem::{Path, Problem};
-use crate::words::{
-    Edge, IndexRule, Input, LimitRule, LimitSource, MOST_STEPS, Method, Step, Steps, Then, Until,
+use crate::vocabulary::{
+    HomingStep, IndexRule, Input, LimitRule, LimitSource, MOST_STEPS, Method, SignalEdge, Steps,
+    Then, Until,
 };
 
 impl Wirer<'_> {
@@ -38,9 +39,9 @@ impl Wirer<'_> {
     fn never_turns(&self, method: &Method) -> Option<&'static str> {
         let limit = self.wiring.homing.as_ref().and_then(|it| it.limit.as_ref());
         let turns = limit.is_none_or(|it| it.all().contains(&LimitRule::Turn));
-        let meets = |step: Step| {
+        let meets = |step: HomingStep| {
             let ahead = if step.forward { Input::LimitPos } else { Input::LimitNeg };
-            let wanted = Until::Edge(Edge { signal: ahead, on: true });
+            let wanted = Until::Edge(SignalEdge { signal: ahead, on: true });
             step.until != wanted && self.is_seen(ahead)
         };
         let first = [method.steps.get(0), method.on.get(0)];
@@ -64,14 +65,14 @@ impl Wirer<'_> {
         }
     }
 
-    fn steps(&mut self, raw: &[RawStep], path: &Path) -> Steps {
+    fn steps(&mut self, raw: &[RawHomingStep], path: &Path) -> Steps {
         if raw.len() > MOST_STEPS {
             let what = format!("there are {} steps, and room for {MOST_STEPS}", raw.len());
             self.problems.push(Problem::key(path.clone(), what));
         }
-        let step = |(i, it): (usize, &RawStep)| self.step(it, &path.index(i));
+        let step = |(i, it): (usize, &RawHomingStep)| self.step(it, &path.index(i));
         let steps: Vec<_> = raw.iter().enumerate().filter_map(step).collect();
-        let origin = |step: &Step| step.then == Then::Origin;
+        let origin = |step: &HomingStep| step.then == Then::Origin;
         let last = steps.len().saturating_sub(1);
         if steps.len() == raw.len() {
             for (i, step) in steps.iter().enumerate().filter(|(i, it)| origin(it) != (*i == last)) {
@@ -93,11 +94,11 @@ impl Wirer<'_> {
         Steps::new(&steps)
     }
 
-    fn step(&mut self, raw: &RawStep, path: &Path) -> Option<Step> {
+    fn step(&mut self, raw: &RawHomingStep, path: &Path) -> Option<HomingStep> {
         let pace = self.word(&raw.at, "pace", &path.key("at"));
         let until = self.until(&raw.to, &path.key("to"));
         let then = self.word(&raw.then, "end of a step", &path.key("then"));
-        Some(Step { forward: raw.go == RawWay::Pos, pace: pace?, until: until?, then: then? })
+        Some(HomingStep { forward: raw.go == RawWay::Pos, pace: pace?, until: until?, then: then? })
     }
 
     fn until(&mut self, text: &str, path: &Path) -> Option<Until> {
@@ -121,7 +122,7 @@ impl Wirer<'_> {
                 return None;
             }
         };
-        let edge = Edge { signal: self.seen_switch(name, path)?, on };
+        let edge = SignalEdge { signal: self.seen_switch(name, path)?, on };
         Some(if index { Until::Index(Some(edge)) } else { Until::Edge(edge) })
     }
 

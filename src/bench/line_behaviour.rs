@@ -1,0 +1,90 @@
+//! LineBehaviour of a line as a bench says them: whether they can be, and whether somebody would notice.
+
+use super::raw::{RawBenchLine, RawChatter, RawPacing};
+use super::{Device, PortSpec};
+use crate::fault::{Chatter, LineBehaviour, Pacing};
+use crate::model::duration;
+use crate::problem::{Path, Problem};
+use crate::time::Duration;
+use crate::wire::BROADCAST;
+
+/// The latency timers that adapters have, in milliseconds.
+const LATENCIES: std::ops::RangeInclusive<u128> = 1..=255;
+
+/// From one conversation of others to the next, if nobody says.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// Others that talk more often leave our master no room, and less often nobody waits for them.
+const PAUSES: std::ops::RangeInclusive<Duration> =
+    Duration::from_millis(1)..=Duration::from_secs(3600);
+
+/// Reads the line behaviour of the line at `path`; what is wrong with them goes to `problems`.
+pub(super) fn line_behaviour(
+    raw: &RawBenchLine,
+    port: &PortSpec,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> LineBehaviour {
+    let pacing = match raw.pacing {
+        RawPacing::Ideal => Pacing::Ideal,
+        RawPacing::Line => port.pacing(),
+    };
+    let chunk = raw.chunk.as_deref().and_then(|text| {
+        let path = path.key("chunk");
+        let latency = duration(text, &path, problems)?;
+        if !LATENCIES.contains(&latency.as_millis()) {
+            let what = format!("adapters wait for 1 ms to 255 ms, not {latency:?}");
+            problems.push(Problem::value(path, what));
+        }
+        Some(latency)
+    });
+    let chatter = raw.chatter.as_ref().map(|raw| chatter(raw, &path.key("chatter"), problems));
+    LineBehaviour { pacing, chunk, echo: raw.echo, chatter }
+}
+
+fn chatter(raw: &RawChatter, path: &Path, problems: &mut Vec<Problem>) -> Chatter {
+    let units = path.key("units");
+    if raw.units.is_empty() {
+        problems.push(Problem::value(units.clone(), "others need a unit to talk to"));
+    }
+    for (i, unit) in raw.units.iter().enumerate() {
+        if *unit == BROADCAST || *unit > 247 {
+            let what = format!("a unit of others is 1 to 247, not {unit}");
+            problems.push(Problem::value(units.index(i), what));
+        }
+    }
+    let every = raw.every.as_deref();
+    let every = every.and_then(|text| duration(text, &path.key("every"), problems));
+    let every = every.unwrap_or(EVERY);
+    if !PAUSES.contains(&every) {
+        let what = format!("others pause for 1 ms to 1 h, not {every:?}");
+        problems.push(Problem::value(path.key("every"), what));
+    }
+    Chatter { units: raw.units.clone(), every }
+}
+
+/// Nobody else answers for a drive that is here.
+pub(super) fn strangers(
+    line_behaviour: &LineBehaviour,
+    devices: &[Device],
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) {
+    let Some(chatter) = &line_behaviour.chatter else { return };
+    let ours: Vec<u8> = devices.iter().flat_map(Device::units).collect();
+    for (i, unit) in chatter.units.iter().enumerate().filter(|(_, unit)| ours.contains(unit)) {
+        let path = path.key("chatter").key("units").index(i);
+        let what = format!("unit {unit} is a drive of this line");
+        problems.push(Problem::value(path, what).advise("name units that are not here"));
+    }
+}
+
+impl PortSpec {
+    /// How replies are paced on such a port.
+    pub fn pacing(&self) -> Pacing {
+        match self {
+            Self::Serial(_) => Pacing::Port,
+            Self::Pty(_) | Self::Tcp(_) | Self::RtuOverTcp(_) => Pacing::Line,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The line of a soak test: its framing, the drives on it, what stands along their axes.
+
+use super::draw::Draws;
+use crate::bench::{BenchLine, Device, DeviceSpec, PortSpec, WireSpec, match_line};
+use crate::bus::Bus;
+use crate::fault::LineBehaviour;
+use crate::line::Framing;
+use crate::model::Model;
+use crate::motion::{Index, Machine, Zone};
+use crate::serial::Mode;
+use std::sync::Arc;
+
+/// The line of a soak test.
+#[derive(Debug)]
+pub struct Scene {
+    /// The line. It has no rules to begin with.
+    pub line: BenchLine,
+    seed: u64,
+}
+
+impl Scene {
+    /// A line with drives of some of `models`, of which there is one at least.
+    pub fn draw(seed: u64, models: &[Arc<Model>], draws: &mut Draws) -> Self {
+        let tcp = draws.one_in(6);
+        let mut devices = Vec::new();
+        for i in 0..draws.between(1, 3) {
+            let model = draws.pick(models).expect("a soak test has models");
+            let spec = DeviceSpec {
+                unit: Some(1 + 2 * i as u8),
+                machine: machine(draws),
+                position: draws.signed(-2000, 2000),
+                ..DeviceSpec::default()
+            };
+            devices.extend(Device::new(model.clone(), &spec));
+        }
+        let ascii = ascii(&devices).filter(|_| !tcp && draws.one_in(2));
+        let settings = ascii.map(|mode| mode.settings);
+        let strict = draws.one_in(3);
+        let wire = WireSpec::of(&devices, settings, Some(ascii.is_some()), strict);
+        devices.retain_mut(|device| match_line(device, wire.mode, true).is_ok());
+        let port = if tcp { PortSpec::Tcp(String::new()) } else { PortSpec::Pty(None) };
+        let (name, faults, line_behaviour) = ("soak".into(), Vec::new(), LineBehaviour::default());
+        Self { line: BenchLine { name, port, wire, devices, faults, line_behaviour }, seed }
+    }
+
+    /// The unit address of the first station of device number `at`, as the line begins.
+    pub fn unit(&self, at: usize) -> u8 {
+        1 + 2 * at as u8
+    }
+
+    /// Does it carry Modbus TCP?
+    pub fn is_tcp(&self) -> bool {
+        matches!(self.line.port, PortSpec::Tcp(_))
+    }
+
+    /// How frames are told apart on a line that is set to `wire`.
+    pub fn framing(&self, wire: WireSpec) -> Framing {
+        if self.is_tcp() { Framing::Mbap } else { wire.framing(1.0) }
+    }
+
+    /// The drives, just switched on.
+    pub fn bus(&self) -> Bus {
+        self.line.bus(self.seed)
+    }
+}
+
+/// A mode in ASCII that the first drive knows, if there is one.
+fn ascii(devices: &[Device]) -> Option<Mode> {
+    let line = &devices.first()?.model.line;
+    let format = line.format.codes.values().find(|it| it.ascii)?.format;
+    let baud = *line.baud.codes.values().next()?;
+    Some(Mode { ascii: true, settings: crate::serial::Settings { baud, format } })
+}
+
+fn machine(draws: &mut Draws) -> Machine {
+    let mut maybe = |low: i64, high: i64| (!draws.one_in(3)).then(|| draws.signed(low, high));
+    let home = maybe(-20_000, 20_000).map(|from| Zone { from, to: from + 700 });
+    let negative_limit = maybe(-40_000, -1_000);
+    let positive_limit = maybe(1_000, 40_000);
+    let hard_stop = maybe(500, 50_000).map(|room| [-room, room]);
+    let index = maybe(50, 10_000).map(|every| Index { every, offset: 17 });
+    Machine { home, negative_limit, positive_limit, hard_stop, index }
+}

@@ -1,0 +1,165 @@
+//! What happens in a soak test, one thing after the other: drawn beforehand, so that leaving one out leaves the others
+//! as they are.
+
+use super::draw::Draws;
+use super::master;
+use super::routine::{RoutineAxis, routine};
+use super::scene::Scene;
+use crate::bus::Command;
+use crate::event::DriveId;
+use crate::fault::FaultKind;
+use crate::time::Duration;
+use crate::vocabulary::{AlarmCause, Named};
+use std::fmt;
+
+/// One thing that happens.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SoakStep {
+    /// Nothing, for so long.
+    Wait(Duration),
+    /// A master sends a frame.
+    Ask {
+        /// To whom.
+        unit: u8,
+        /// What.
+        pdu: Vec<u8>,
+        /// What becomes of the frame on its way.
+        damage: FrameDamage,
+    },
+    /// Bytes that nobody meant; on TCP the client hangs up behind them.
+    Noise(Vec<u8>),
+    /// The line falls silent, and then each drive that hears it is asked something harmless.
+    Listen,
+    /// Something happens to a drive.
+    Do(Command),
+    /// A fault rule from now on.
+    Fault(String),
+    /// No such rule from now on.
+    NoFault(String),
+}
+
+/// What becomes of a request's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrameDamage {
+    /// It arrives.
+    Whole,
+    /// Its end never comes. On TCP it comes later.
+    Cut(usize),
+    /// It comes in two pieces with a pause between them.
+    Pieces(usize, Duration),
+    /// One of its bits is turned over. Not on TCP, which carries what it is given.
+    Flipped(usize),
+}
+
+/// Everything that happens on `scene`, `count` steps.
+pub fn draw(scene: &Scene, count: usize, mut stream: impl FnMut(u64) -> Draws) -> Vec<SoakStep> {
+    let steps = |n: usize| {
+        let mut draws = stream(n as u64);
+        match draws.one_in(16) {
+            true => routine(axis(scene, &mut draws), &mut draws),
+            false => vec![step(scene, n, &mut draws)],
+        }
+    };
+    (0..count).flat_map(steps).chain([SoakStep::Listen]).collect()
+}
+
+fn axis<'a>(scene: &'a Scene, draws: &mut Draws) -> RoutineAxis<'a> {
+    let devices = &scene.line.devices;
+    let at = draws.between(0, devices.len() as u64 - 1) as usize;
+    let before: usize = devices[..at].iter().map(|device| device.setups.len()).sum();
+    let station = draws.between(0, devices[at].setups.len() as u64 - 1) as u8;
+    let drive = DriveId(before as u16 + u16::from(station));
+    RoutineAxis { model: &devices[at].model, drive, unit: scene.unit(at) + station }
+}
+
+fn step(scene: &Scene, n: usize, draws: &mut Draws) -> SoakStep {
+    match draws.between(0, 99) {
+        0..20 => SoakStep::Wait(draws.pause(Duration::from_secs(4))),
+        20..28 => SoakStep::Listen,
+        28..36 => SoakStep::Do(terminal(scene, draws)),
+        36 => {
+            let cause = *draws.pick(AlarmCause::ALL).expect("there are some");
+            SoakStep::Do(Command::Raise { drive: drive(scene, draws), cause })
+        }
+        37 => SoakStep::Do(Command::PowerCycle { drive: drive(scene, draws) }),
+        38..44 => fault(scene, n, draws),
+        44..50 => SoakStep::NoFault(rule(draws.between(0, n as u64))),
+        50..54 => SoakStep::Noise(draws.bytes(60)),
+        _ => {
+            let (unit, pdu) = master::request(scene, draws);
+            SoakStep::Ask { unit, pdu, damage: damage(draws) }
+        }
+    }
+}
+
+fn damage(draws: &mut Draws) -> FrameDamage {
+    let at = draws.between(1, 9) as usize;
+    match draws.between(0, 19) {
+        0 => FrameDamage::Cut(at),
+        1 => FrameDamage::Flipped(draws.between(0, 60) as usize),
+        2..4 => FrameDamage::Pieces(at, draws.pause(Duration::from_millis(40))),
+        _ => FrameDamage::Whole,
+    }
+}
+
+fn drive(scene: &Scene, draws: &mut Draws) -> DriveId {
+    let count: usize = scene.line.devices.iter().map(|device| device.setups.len()).sum();
+    DriveId(draws.between(0, count as u64 - 1) as u16)
+}
+
+fn terminal(scene: &Scene, draws: &mut Draws) -> Command {
+    let (index, signal) = (draws.between(0, 9) as u8, draws.one_in(2));
+    Command::Terminal { drive: drive(scene, draws), index, signal }
+}
+
+fn rule(n: u64) -> String {
+    format!("f{n}")
+}
+
+fn fault(scene: &Scene, n: usize, draws: &mut Draws) -> SoakStep {
+    let possible = |kind: &FaultKind| {
+        kind.preset().is_none() && !(scene.is_tcp() && kind.impossible_on_tcp().is_some())
+    };
+    let kinds: Vec<_> = FaultKind::ALL.iter().copied().filter(possible).collect();
+    let kind = *draws.pick(&kinds).expect("most are possible");
+    let mut spec = format!("{}:name={}", kind.name(), rule(n as u64));
+    for key in kind.keys() {
+        let value = match *key {
+            "ms" => format!("{}-{}", draws.between(1, 20), draws.between(20, 900)),
+            "code" => draws.between(1, 0xFF).to_string(),
+            "to" => draws.between(1, 0x7F).to_string(),
+            // The number of the transaction stays whole.
+            "at" => draws.between(2, 6).to_string(),
+            _ => draws.between(1, 12).to_string(),
+        };
+        spec += &format!(",{key}={value}");
+    }
+    spec += &match draws.between(0, 3) {
+        0 => format!(",every={}", draws.between(1, 4)),
+        1 => format!(",probability=0.{}", draws.between(1, 9)),
+        2 => format!(",count={},unit={}", draws.between(1, 5), draws.between(1, 6)),
+        _ => format!(
+            ",skip={},function={}",
+            draws.between(0, 3),
+            draws.pick(&[3, 6, 16]).expect("one")
+        ),
+    };
+    SoakStep::Fault(spec)
+}
+
+impl fmt::Display for SoakStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Wait(by) => write!(f, "wait {by:?}"),
+            Self::Ask { unit, pdu, damage } => {
+                write!(f, "ask unit {unit}: {}", crate::wire::hex::to_hex(pdu))?;
+                if *damage == FrameDamage::Whole { Ok(()) } else { write!(f, " ({damage:?})") }
+            }
+            Self::Noise(bytes) => write!(f, "noise {}", crate::wire::hex::to_hex(bytes)),
+            Self::Listen => write!(f, "listen"),
+            Self::Do(command) => write!(f, "do {command:?}"),
+            Self::Fault(spec) => write!(f, "fault {spec}"),
+            Self::NoFault(name) => write!(f, "no fault {name}"),
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Homing as a model writes it: steps of a method, and what goes for all of its methods.
+
+use super::{Input, named_terms};
+
+/// Most steps that one list of a method can have.
+pub const MOST_STEPS: usize = 6;
+
+/// One step: go until something happens, then do something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HomingStep {
+    /// In the positive direction?
+    pub forward: bool,
+    /// How fast.
+    pub pace: Pace,
+    /// Until what.
+    pub until: Until,
+    /// And then.
+    pub then: Then,
+}
+
+named_terms! {
+    /// How fast a homing step goes.
+    Pace {
+        Fast "fast" "at `home.speed_fast`",
+        Slow "slow" "at `home.speed_slow`",
+    }
+}
+
+/// What a homing step waits for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Until {
+    /// A switch changes.
+    Edge(SignalEdge),
+    /// An index pulse comes; with an edge, the first one after it.
+    Index(Option<SignalEdge>),
+    /// The index pulse comes again that ended an earlier step.
+    SameIndex,
+    /// The axis is pressed against a hard stop.
+    Collision,
+}
+
+impl Until {
+    /// The change of a switch in it.
+    pub fn edge(self) -> Option<SignalEdge> {
+        match self {
+            Self::Edge(edge) => Some(edge),
+            Self::Index(edge) => edge,
+            Self::SameIndex | Self::Collision => None,
+        }
+    }
+}
+
+/// A change of a switch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignalEdge {
+    /// Which signal.
+    pub signal: Input,
+    /// Does it turn on?
+    pub on: bool,
+}
+
+named_terms! {
+    /// What happens at the end of a homing step.
+    Then {
+        Ramp "ramp" "slow down to a standstill, then take the next step",
+        Keep "keep" "take the next step without stopping",
+        Origin "origin" "this point is the origin",
+    }
+}
+
+/// Steps in order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Steps {
+    steps: [Option<HomingStep>; MOST_STEPS],
+}
+
+impl Steps {
+    /// Those of `steps` that there is room for.
+    pub fn new(steps: &[HomingStep]) -> Self {
+        let mut all = [None; MOST_STEPS];
+        all.iter_mut().zip(steps).for_each(|(slot, step)| *slot = Some(*step));
+        Self { steps: all }
+    }
+
+    /// HomingStep `index`, from 0.
+    pub fn get(&self, index: usize) -> Option<HomingStep> {
+        self.steps.get(index).copied().flatten()
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = HomingStep> + '_ {
+        self.steps.iter().flatten().copied()
+    }
+
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.steps[0].is_none()
+    }
+}
+
+/// A homing method.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Method {
+    /// The switch that decides where it begins.
+    pub by: Option<Input>,
+    /// The steps, where that switch is off at the start. None at all: the origin is where the axis stands.
+    pub steps: Steps,
+    /// The steps after the first one's way ended at a limit instead.
+    pub at_limit: Steps,
+    /// The steps where the switch is on at the start.
+    pub on: Steps,
+    /// Does an index pulse refine the origin, where the drive is set so?
+    pub index: bool,
+}
+
+impl Method {
+    /// Every step that it may take.
+    pub fn all_steps(&self) -> impl Iterator<Item = HomingStep> + '_ {
+        [&self.steps, &self.at_limit, &self.on].into_iter().flat_map(Steps::iter)
+    }
+}
+
+named_terms! {
+    /// What happens when a limit ends the way of a homing step.
+    LimitRule {
+        Turn "turn" "the method's steps for it follow; where it has none, the axis waits there for `home.time_limit`, or without one the homing is given up",
+        Alarm "alarm" "the homing is given up with alarm `homing_limit_pos` or `homing_limit_neg`",
+    }
+}
+
+named_terms! {
+    /// What tells a homing that the axis has come to a limit.
+    LimitSource {
+        Switch "switch" "the limit switch",
+        HardStop "hard_stop" "the hard stop",
+        Either "either" "whichever comes first",
+    }
+}
+
+named_terms! {
+    /// How an index pulse refines the origin of methods that say `index: true`.
+    IndexRule {
+        None "none" "not at all",
+        Back "back" "the next index pulse against the direction of the method's first step is the origin",
+        Onward "onward" "the next index pulse in the direction of the method's first step is the origin; a limit that the method starts `by` does not end this way",
+    }
+}
+
+named_terms! {
+    /// How an axis stands at its origin.
+    OriginStop {
+        AtOnce "at_once" "at once, exactly on it",
+        Ramp "ramp" "after a ramp, somewhat beyond it",
+    }
+}
+
+named_terms! {
+    /// What the position register says when a homing is over.
+    OriginPosition {
+        Coordinate "coordinate" "`home.coordinate`",
+        Zero "zero" "0",
+        MinusCoordinate "minus_coordinate" "`home.coordinate` with the other sign",
+        Kept "kept" "what it says anyway",
+        KeptPlus "kept_plus_coordinate" "what it says anyway and `home.coordinate`",
+        KeptMinus "kept_minus_coordinate" "what it says anyway less `home.coordinate`",
+    }
+}
+
+named_terms! {
+    /// What can start a homing, where a row decides about that.
+    HomeStarter {
+        Never "never" "nothing",
+        Input "input" "signal `home_start`",
+        Command "command" "action `home_start`",
+        FirstEnable "first_enable" "the first time that the power stage goes on after power-on",
+    }
+}
+
+named_terms! {
+    /// How an axis stops at a limit.
+    LimitStop {
+        Coast "coast" "it coasts, as without power",
+        Quick "quick" "at once",
+        Ramp "ramp" "with the deceleration of the motion",
+    }
+}
+
+impl Default for LimitStop {
+    /// As a switch in the power line would.
+    fn default() -> Self {
+        Self::Quick
+    }
+}
+
+named_terms! {
+    /// When soft limits are in force.
+    SoftLimitRule {
+        Off "off" "never",
+        AfterHoming "after_homing" "once a homing is done",
+        Always "always" "always",
+    }
+}
+
+named_terms! {
+    /// Why a homing ended without an origin.
+    HomeEnd {
+        Limit "limit" "a limit ended its way",
+        TimeLimit "time_limit" "its time was over",
+        Alarm "alarm" "an alarm was raised",
+        Stopped "stopped" "the axis was stopped",
+        PowerOff "power_off" "the power stage went off",
+        Replaced "replaced" "another motion took its place",
+    }
+}

@@ -1,0 +1,73 @@
+//! The words that models and behaviours share: causes, signals, quantities, actions, alarms.
+//!
+//! Rust speaks causes, YAML speaks numbers. A model says which number, bit or row stands for which
+//! word; a behaviour knows only the word. `docs/roles.md` is generated from the tables in here.
+
+mod action;
+mod alarm;
+mod cause;
+mod homing;
+mod quantity;
+mod refusal;
+mod segment;
+mod setting;
+mod signal;
+mod taken;
+mod threshold;
+
+pub use action::{Action, Modifier, Modifiers};
+pub use alarm::{AlarmCause, AlarmCauses};
+pub use cause::Cause;
+pub use homing::{
+    HomeEnd, HomeStarter, HomingStep, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS,
+    Method, OriginPosition, OriginStop, Pace, SignalEdge, SoftLimitRule, Steps, Then, Until,
+};
+pub use quantity::Quantity;
+pub use refusal::{Detail, Refusal, RowId};
+pub use segment::{Condition, InhibitRule, InterruptRule, Lasts, Target};
+pub use setting::Setting;
+pub use signal::{Input, Inputs, Output, Outputs};
+pub use taken::Taken;
+pub use threshold::Threshold;
+
+/// A word with a name in files and a line of explanation: what the catalogue prints.
+pub trait Named: Copy + 'static {
+    /// Every word of this kind, in the order of the catalogue.
+    const ALL: &'static [Self];
+
+    /// The name in files.
+    fn name(self) -> &'static str;
+
+    /// What it means, in one line.
+    fn about(self) -> &'static str;
+
+    /// The word with that name.
+    fn parse(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|word| word.name() == name)
+    }
+}
+
+/// Declares an enum of words: variant, name in files, explanation.
+macro_rules! named_terms {
+    ($(#[$doc:meta])* $type:ident { $($variant:ident $name:literal $about:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u8)]
+        pub enum $type {
+            $(#[doc = $about] $variant,)*
+        }
+
+        impl $crate::vocabulary::Named for $type {
+            const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            fn about(self) -> &'static str {
+                match self { $(Self::$variant => $about,)* }
+            }
+        }
+    };
+}
+pub(crate) use named_terms;
