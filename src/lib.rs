@@ -38,6 +38,9 @@ pub mod bank;
 pub mod behaviour;
 pub mod bench;
 pub mod bus;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 pub mod drive;
 pub mod event;
 pub mod fault;

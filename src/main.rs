@@ -1,7 +1,5 @@
-//! The program: flags in, exit code out. Everything else is in the library.
-
-mod cli;
+//! The program. Everything, its command line too, is in the library.
 
 fn main() -> std::process::ExitCode {
-    cli::main()
+    drivemu::cli::main()
 }

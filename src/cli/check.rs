@@ -3,12 +3,12 @@
 use super::args::CheckArgs;
 use super::output::{complain, print};
 use super::{CliError, INVALID};
-use drivemu::bench::{kind_of, parse};
-use drivemu::model::check as check_model;
-use drivemu::problem::Problem;
-use drivemu::problem::render::render;
-use drivemu::scenario::check as check_scenario;
-use drivemu::server::{FileLibrary, plain, read_text};
+use crate::bench::{kind_of, parse};
+use crate::model::check as check_model;
+use crate::problem::Problem;
+use crate::problem::render::render;
+use crate::scenario::check as check_scenario;
+use crate::server::{FileLibrary, plain, read_text};
 use std::path::Path;
 
 pub fn check(args: &CheckArgs) -> Result<(), CliError> {

@@ -12,9 +12,9 @@ mod schema;
 mod show;
 mod state;
 
+use crate::server::{plain, said};
 use args::{Args, CliCommand};
 use clap::Parser;
-use drivemu::server::{plain, said};
 use std::io::ErrorKind;
 use std::process::ExitCode;
 

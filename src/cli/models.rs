@@ -2,8 +2,8 @@
 
 use super::output::print;
 use super::{CliError, FAILED};
-use drivemu::model::Choices;
-use drivemu::model::builtin::Builtin;
+use crate::model::Choices;
+use crate::model::builtin::Builtin;
 
 pub fn models() -> Result<(), CliError> {
     for builtin in Builtin::all() {

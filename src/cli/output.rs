@@ -1,8 +1,8 @@
 //! Words on stdout and stderr.
 
 use super::{CliError, FAILED};
-use drivemu::server::{plain, say};
-use drivemu::text::lines;
+use crate::server::{plain, say};
+use crate::text::lines;
 use std::io::{ErrorKind, Write, stdout};
 
 /// Prints to stdout. A reader that went away (`| head`) is no failure.

@@ -3,21 +3,21 @@
 use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
 use super::state::StateArg;
 use super::{CliError, FAILED, INVALID, NO_PORT};
-use drivemu::bench::{
+use crate::bench::{
     Bench, BenchLine, Device, DeviceSpec, Library, OverrideKey, PortSpec, Saved, SpecProblem,
     WireSpec, kind_of, match_line, parse_saved,
 };
-use drivemu::fault::{LineBehaviour, Pacing};
-use drivemu::model::builtin::Builtin;
-use drivemu::model::{Choices, Model, load};
-use drivemu::problem::render::render;
-use drivemu::scenario::{self, Verdict};
-use drivemu::serial::{Mode, Parity, Settings};
-use drivemu::server::{
+use crate::fault::{LineBehaviour, Pacing};
+use crate::model::builtin::Builtin;
+use crate::model::{Choices, Model, load};
+use crate::problem::render::render;
+use crate::scenario::{self, Verdict};
+use crate::serial::{Mode, Parity, Settings};
+use crate::server::{
     Destination, Diagnostics, Ended, FileLibrary, Judged, LogFormat, PathClaims, Play, RunError,
     RunOptions, Store, diagnose, is_path, plain, read_text, run as run_bench,
 };
-use drivemu::units::parse_integer;
+use crate::units::parse_integer;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

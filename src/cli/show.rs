@@ -3,14 +3,14 @@
 use super::CliError;
 use super::args::{ShowArgs, TableFormat};
 use super::output::print;
-use drivemu::bench::Library;
-use drivemu::model::{
+use crate::bench::Library;
+use crate::model::{
     Access, Applies, Choices, Counts, Model, Number, Reaction, Row, RowId, RowKind, Shows,
     WordOrder, load,
 };
-use drivemu::problem::render::render;
-use drivemu::server::FileLibrary;
-use drivemu::vocabulary::Named;
+use crate::problem::render::render;
+use crate::server::FileLibrary;
+use crate::vocabulary::Named;
 use serde_json::{Value, json};
 
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
@@ -35,7 +35,7 @@ pub fn show(args: &ShowArgs) -> Result<(), CliError> {
 fn find(model: &Model, name: &str) -> Result<RowId, CliError> {
     model.map.find(name).ok_or_else(|| {
         let ids = model.map.rows().map(|(_, row)| row.id.as_str());
-        let advice = drivemu::problem::suggest::did_you_mean(name, ids);
+        let advice = crate::problem::suggest::did_you_mean(name, ids);
         let advice = advice.map(|it| format!(" ({it})")).unwrap_or_default();
         CliError::invalid(format!("{} has no row `{name}`{advice}", model.name))
     })
@@ -239,7 +239,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         Reaction::InputWord(word) => format!("input word {}", word + 1),
         Reaction::Command(index) => {
             let actions = &model.wiring.commands[usize::from(index)].actions;
-            let action = |(value, action): &(i64, drivemu::vocabulary::Action)| {
+            let action = |(value, action): &(i64, crate::vocabulary::Action)| {
                 format!("{value} {}", action.name())
             };
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
@@ -328,13 +328,13 @@ fn counts(model: &Model, id: RowId) -> String {
 
 /// How a value survives power-off: a plain write does it, a write through another window, a command, or nothing.
 fn kept(model: &Model, row: &Row) -> String {
-    let keeps = |window: &&drivemu::model::Window| {
+    let keeps = |window: &&crate::model::Window| {
         let (first, last) = window.span;
-        window.layer == drivemu::model::Layer::RamAndStore && (first..=last).contains(&row.at)
+        window.layer == crate::model::Layer::RamAndStore && (first..=last).contains(&row.at)
     };
     let commands = model.wiring.commands.iter().flat_map(|it| &it.actions);
     let stores =
-        commands.map(|(_, action)| *action).any(|it| it == drivemu::vocabulary::Action::StoreAll);
+        commands.map(|(_, action)| *action).any(|it| it == crate::vocabulary::Action::StoreAll);
     let window = model.map.windows().iter().find(keeps);
     match (row.access, row.volatile, window) {
         (Access::Read, ..) => String::new(),

@@ -1,10 +1,10 @@
 //! `--state`: what an earlier run has left, and what to say if that is not for this one.
 
 use super::CliError;
-use drivemu::bench::Saved;
-use drivemu::problem::Problem;
-use drivemu::problem::render::render;
-use drivemu::server::{Store, plain};
+use crate::bench::Saved;
+use crate::problem::Problem;
+use crate::problem::render::render;
+use crate::server::{Store, plain};
 use std::path::Path;
 
 /// A state file as it was found. Without one it is that of a first run.
