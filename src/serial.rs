@@ -107,8 +107,9 @@ impl FromStr for Format {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let bad =
-            || format!("`{text}` is no character format; write data bits, parity, stop bits: 8N1");
+        let bad = || {
+            format!("`{text}` is not a character format; write data bits, parity, stop bits: 8N1")
+        };
         let &[data, parity, stop] = text.as_bytes() else { return Err(bad()) };
         let parity = match parity {
             b'N' => Parity::None,
@@ -129,7 +130,8 @@ impl FromStr for Settings {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let bad = || format!("`{text}` is no line setting; write baud and format: 9600-8N2");
+        let bad =
+            || format!("`{text}` is not a line setting; write baud rate and format: 9600-8N2");
         let (baud, format) = text.split_once('-').ok_or_else(bad)?;
         let baud = baud.parse().ok().filter(|baud| *baud > 0).ok_or_else(bad)?;
         Ok(Self { baud, format: format.parse()? })

@@ -45,14 +45,14 @@ fn without_a_bottom() {
 #[test]
 fn without_an_end() {
     for text in ["#".repeat(bounds::SIZE + 1), " ".repeat(bounds::SIZE + 1)] {
-        assert_eq!(refused(&text), "a file must not have more than 16777216 bytes");
+        assert_eq!(refused(&text), "a file may have at most 16777216 bytes");
     }
     let values = format!("[{}]", "1,".repeat(bounds::VALUES));
-    assert_eq!(refused(&values), "a file must not have more than 1000000 values");
+    assert_eq!(refused(&values), "a file may have at most 1000000 values");
     let key = format!("{}: 1", "k".repeat(bounds::KEY + 1));
-    assert_eq!(refused(&key), "a key must not have more than 256 characters");
+    assert_eq!(refused(&key), "a key may have at most 256 characters");
     let text = format!("a: {}", "t".repeat(bounds::TEXT + 1));
-    assert_eq!(refused(&text), "a text must not have more than 4096 characters");
+    assert_eq!(refused(&text), "a string may have at most 4096 characters");
     // Characters are counted, not bytes.
     assert!(tree(&format!("{}: {}", "名".repeat(bounds::KEY), "名".repeat(bounds::TEXT))).is_ok());
 }
@@ -97,13 +97,13 @@ fn too_much_of_a_bench() {
     let lines =
         many(257, |n| format!("  - {{name: l{n}, pty: auto, drives: [{{model: hcfa-x}}]}}\n"));
     let what = of_bench(&format!("lines:\n{lines}"));
-    assert_eq!(what, "lines: at most 256 lines may stand here, not 257");
+    assert_eq!(what, "lines: at most 256 lines are allowed here, not 257");
     let drives = many(248, |_| "{model: hcfa-x}, ".into());
     let what = of_bench(&format!("lines: [{{pty: auto, drives: [{drives}]}}]"));
-    assert_eq!(what, "lines[0].drives: at most 247 drives may stand here, not 248");
+    assert_eq!(what, "lines[0].drives: at most 247 drives are allowed here, not 248");
     let faults = many(257, |_| "{do: late}, ".into());
     let line = format!("lines: [{{pty: auto, drives: [{{model: hcfa-x}}], faults: [{faults}]}}]");
-    assert_eq!(of_bench(&line), "lines[0].faults: at most 256 faults may stand here, not 257");
+    assert_eq!(of_bench(&line), "lines[0].faults: at most 256 faults are allowed here, not 257");
 }
 
 /// The only problem of a scenario.
@@ -117,17 +117,17 @@ fn of_scenario(text: &str) -> String {
 fn too_much_of_a_scenario() {
     let steps = many(10_001, |_| "  - {name: a, do: [power_cycle]}\n".into());
     let what = of_scenario(&format!("steps:\n{steps}"));
-    assert_eq!(what, "steps: at most 10000 steps may stand here, not 10001");
+    assert_eq!(what, "steps: at most 10000 steps are allowed here, not 10001");
     let orders = many(101, |_| "power_cycle, ".into());
     let what = of_scenario(&format!("steps: [{{name: a, do: [{orders}]}}]"));
-    assert_eq!(what, "steps[0].do: at most 100 orders may stand here, not 101");
+    assert_eq!(what, "steps[0].do: at most 100 orders are allowed here, not 101");
     let expect = many(101, |_| "{signal: alarm, is: off}, ".into());
     let what = of_scenario(&format!("steps: [{{name: a, expect: [{expect}]}}]"));
-    assert_eq!(what, "steps[0].expect: at most 100 conditions may stand here, not 101");
+    assert_eq!(what, "steps[0].expect: at most 100 conditions are allowed here, not 101");
     let orders = many(90, |_| "fault late, ".into());
     let steps = many(3, |_| format!("  - {{name: a, do: [{orders}]}}\n"));
     let what = of_scenario(&format!("steps:\n{steps}"));
-    assert_eq!(what, "steps[2].do[76]: at most 256 rules may stand here, not 257");
+    assert_eq!(what, "steps[2].do[76]: at most 256 rules are allowed here, not 257");
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn too_much_of_a_model() {
         ),
     ] {
         let told = problems(&more);
-        let says = "the text of all copies must not have more than 67108864 bytes";
+        let says = "the total text of all copies may have at most 67108864 bytes";
         assert!(told.iter().any(|it| it.what == says), "{told:?}");
     }
 }

@@ -258,7 +258,7 @@ fn a_rig_in_use_is_set_up_no_more() {
             act(&mut rig);
             let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| set_up(rig)));
             let why = caught.err().and_then(|why| why.downcast::<String>().ok());
-            let told = why.is_some_and(|why| why.contains("comes before the first use"));
+            let told = why.is_some_and(|why| why.contains("must be called before the first use"));
             assert!(told, "use {i}, set up {j}");
         }
     }

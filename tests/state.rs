@@ -52,7 +52,7 @@ fn the_text_of_a_state() {
     // Back to what left the factory: stored all the same.
     rig.ask("01 06 E8 0B 00 00");
     let want = "\
-# What drives keep over power-off. Not to be edited during a run.
+# Non-volatile memory of the drives. Do not edit during a run.
 format: 1
 drives:
   line/1:

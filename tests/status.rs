@@ -119,7 +119,8 @@ impl Table {
         let mut text = format!("{}\n{}", self.setup, self.situations[situation]);
         let mut registers: BTreeMap<usize, &str> = BTreeMap::new();
         for Shown { register, by, value } in self.values(column)? {
-            let find = |name: &str| model.map.find(name).ok_or(format!("no register `{name}`"));
+            let find =
+                |name: &str| model.map.find(name).ok_or(format!("unknown register `{name}`"));
             if let Some((setting, value)) = by {
                 let at = model.map.row(find(setting)?).at;
                 write!(text, "\n> 06 {at:04X} {value:04X}").expect("a string");

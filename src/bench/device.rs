@@ -83,8 +83,8 @@ impl Device {
             }
         }
         if let (Some(name), Some(_)) = (names_unit(&model, spec), spec.unit) {
-            let what = format!("{name} holds the unit address, which `unit` says already");
-            let advice = Some("give one of the two".into());
+            let what = format!("{name} holds the unit address, which `unit` already sets");
+            let advice = Some("remove one of the two".into());
             problems.push(SpecProblem {
                 override_key: OverrideKey::SetName(name.clone()),
                 what,
@@ -142,12 +142,12 @@ fn start_value(model: &Model, name: &str, value: i64) -> Result<(RowId, u32), Sp
     let value = [Some(value), bits].into_iter().flatten().find(|value| row.admits(*value));
     match value {
         _ if model.wiring.shows(id).is_some() => {
-            let what = format!("{} shows what the drive computes and can't be set", row.label());
+            let what = format!("{} shows a computed value and cannot be set", row.label());
             Err(SpecProblem { override_key, what, advice: None })
         }
         Some(value) => Ok((id, row.kind.raw(value))),
         None => {
-            let what = format!("{} takes {}, not {}", row.label(), row.range_text(), asked);
+            let what = format!("{} accepts {}, not {}", row.label(), row.range_text(), asked);
             Err(SpecProblem { override_key, what, advice: None })
         }
     }
@@ -166,7 +166,7 @@ fn no_register(model: &Model, name: &str) -> SpecProblem {
     let ids = model.map.rows().map(|(_, row)| row.id.as_str());
     let options = model.options.iter().map(|option| option.name.as_str());
     let advice = suggest::did_you_mean(name, ids.chain(options));
-    SpecProblem { override_key, what: format!("no register or option `{name}`"), advice }
+    SpecProblem { override_key, what: format!("unknown register or option `{name}`"), advice }
 }
 
 fn unit_value(
@@ -182,8 +182,8 @@ fn unit_value(
             return None;
         }
         let what = match value {
-            0 => "unit 0 is for broadcasts, and no drive answers to it".into(),
-            _ => format!("{} takes {}, not {value}", row.label(), row.range_text()),
+            0 => "unit 0 is the broadcast address and cannot be a drive's".into(),
+            _ => format!("{} accepts {}, not {value}", row.label(), row.range_text()),
         };
         problems.push(SpecProblem { override_key: OverrideKey::Unit, what, advice: None });
         return None;
@@ -203,10 +203,10 @@ fn switches(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) -
     if count == 0 {
         refuse("this drive has no DIP switches".into(), Some("use `unit`".into()));
     } else if switches > most {
-        refuse(format!("{count} switches make 0..{most}, not {switches}"), None);
+        refuse(format!("{count} switches give 0..{most}, not {switches}"), None);
     } else if address != 0 && spec.unit.is_some_and(|unit| unit != address) {
-        let what = format!("the switches say {address}, and then `unit` changes nothing");
-        refuse(what, Some("give one of the two".into()));
+        let what = format!("the switches set address {address}, so `unit` has no effect");
+        refuse(what, Some("remove one of the two".into()));
     }
     switches
 }
@@ -221,11 +221,11 @@ fn terminals(model: &Model, spec: &DeviceSpec, problems: &mut Vec<SpecProblem>) 
             Some(index) => signals |= 1 << index,
             None => problems.push(SpecProblem {
                 override_key: OverrideKey::Terminal(i),
-                what: format!("no input terminal `{name}`"),
+                what: format!("unknown input terminal `{name}`"),
                 advice: Some(match names.as_slice() {
                     [] => "this drive has none".into(),
-                    [first, .., last] => format!("there are {first} to {last}"),
-                    [only] => format!("there is {only}"),
+                    [first, .., last] => format!("this drive has {first} to {last}"),
+                    [only] => format!("this drive has {only}"),
                 }),
             }),
         }

@@ -25,14 +25,14 @@ impl FaultContext for BenchLine {
         let Some(first) = places.next() else {
             let ids = maps.flat_map(|map| map.rows().map(|(_, row)| row.id.as_str()));
             let advice = suggest::did_you_mean(name, ids);
-            let what = format!("no drive of this line has a register `{name}`");
+            let what = format!("no drive on this line has a register `{name}`");
             return Err(NoRow { what, advice });
         };
         match places.all(|other| other == first) {
             true => Ok(first),
             false => {
-                let what = format!("the drives of this line have `{name}` at different addresses");
-                Err(NoRow { what, advice: Some("give the address".into()) })
+                let what = format!("the drives on this line have `{name}` at different addresses");
+                Err(NoRow { what, advice: Some("write the address instead".into()) })
             }
         }
     }

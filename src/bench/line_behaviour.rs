@@ -33,7 +33,7 @@ pub(super) fn line_behaviour(
         let path = path.key("chunk");
         let latency = duration(text, &path, problems)?;
         if !LATENCIES.contains(&latency.as_millis()) {
-            let what = format!("adapters wait for 1 ms to 255 ms, not {latency:?}");
+            let what = format!("`chunk` must be 1 ms to 255 ms, not {latency:?}");
             problems.push(Problem::value(path, what));
         }
         Some(latency)
@@ -45,11 +45,11 @@ pub(super) fn line_behaviour(
 fn chatter(raw: &RawChatter, path: &Path, problems: &mut Vec<Problem>) -> Chatter {
     let units = path.key("units");
     if raw.units.is_empty() {
-        problems.push(Problem::value(units.clone(), "others need a unit to talk to"));
+        problems.push(Problem::value(units.clone(), "`units` must list at least one unit"));
     }
     for (i, unit) in raw.units.iter().enumerate() {
         if *unit == BROADCAST || *unit > 247 {
-            let what = format!("a unit of others is 1 to 247, not {unit}");
+            let what = format!("a unit must be 1 to 247, not {unit}");
             problems.push(Problem::value(units.index(i), what));
         }
     }
@@ -57,7 +57,7 @@ fn chatter(raw: &RawChatter, path: &Path, problems: &mut Vec<Problem>) -> Chatte
     let every = every.and_then(|text| duration(text, &path.key("every"), problems));
     let every = every.unwrap_or(EVERY);
     if !PAUSES.contains(&every) {
-        let what = format!("others pause for 1 ms to 1 h, not {every:?}");
+        let what = format!("`every` must be 1 ms to 1 h, not {every:?}");
         problems.push(Problem::value(path.key("every"), what));
     }
     Chatter { units: raw.units.clone(), every }
@@ -74,8 +74,9 @@ pub(super) fn strangers(
     let ours: Vec<u8> = devices.iter().flat_map(Device::units).collect();
     for (i, unit) in chatter.units.iter().enumerate().filter(|(_, unit)| ours.contains(unit)) {
         let path = path.key("chatter").key("units").index(i);
-        let what = format!("unit {unit} is a drive of this line");
-        problems.push(Problem::value(path, what).advise("name units that are not here"));
+        let what = format!("unit {unit} is a drive on this line");
+        problems
+            .push(Problem::value(path, what).advise("list units that no drive on this line has"));
     }
 }
 

@@ -41,26 +41,31 @@ fn impossible(machine: &Machine, start: i64) -> Vec<MachineProblem> {
     let mut problems = Vec::new();
     let mut refuse = |key, what| problems.push(MachineProblem { key, what });
     if let Some(Zone { from, to }) = machine.home.filter(|it| it.from >= it.to) {
-        let what = format!("no count lies from {from} to before {to}, so it is never active");
+        let what =
+            format!("the range from {from} to before {to} is empty: the switch is never active");
         refuse("home", what);
     }
     if let (Some(negative), Some(positive)) = (machine.negative_limit, machine.positive_limit)
         && negative > positive
     {
-        refuse("positive_limit", format!("it lies below the negative limit, {negative}"));
+        refuse("positive_limit", format!("must not be below the negative limit, {negative}"));
     }
     match machine.hard_stop {
         Some([low, high]) if low >= high => {
-            refuse("hard_stop", format!("there is no way from {low} to {high}"));
+            refuse(
+                "hard_stop",
+                format!("the first hard stop must be below the second: {low} is not below {high}"),
+            );
         }
         Some([low, high]) if start < low || start > high => {
-            let what = format!("the axis starts at {start}, and gets from {low} to {high} only");
+            let what =
+                format!("the axis starts at {start}, outside its hard stops, {low} and {high}");
             refuse("hard_stop", what);
         }
         _ => {}
     }
     if machine.index.is_some_and(|it| it.every < 1) {
-        refuse("index", "from one index pulse to the next it is 1 count or more".into());
+        refuse("index", "`every` must be at least 1 count".into());
     }
     problems
 }
@@ -73,7 +78,7 @@ fn beyond_the_stops(machine: &Machine) -> Vec<MachineProblem> {
         ("negative_limit", machine.negative_limit.is_some_and(|it| it <= low)),
         ("positive_limit", machine.positive_limit.is_some_and(|it| it > high)),
     ];
-    let what = format!("the hard stops, {low} and {high}, keep the axis from it");
+    let what = format!("out of reach, beyond the hard stops, {low} and {high}");
     let problem = |(key, _)| MachineProblem { key, what: what.clone() };
     beyond.into_iter().filter(|(_, is)| *is).map(problem).collect()
 }
@@ -89,21 +94,21 @@ fn unseen(machine: &Machine, start: i32, wiring: &Wiring) -> Vec<MachineProblem>
     ];
     for (key, signal, _) in switches.into_iter().filter(|(.., is)| *is) {
         if !is_wired(wiring, signal) {
-            let what = format!("no terminal of this drive can carry `{}`", signal.name());
+            let what = format!("no terminal of this drive can be assigned `{}`", signal.name());
             refuse(key, what);
         }
     }
     let moves = !wiring.axis.settings.is_empty();
     if machine.hard_stop.is_some() && !moves {
-        refuse("hard_stop", "nothing moves the axis of this drive".into());
+        refuse("hard_stop", "this drive does not move an axis".into());
     }
     let marked = looks_for_index(wiring);
     if machine.index.is_some() && !marked {
-        refuse("index", "no homing of this drive looks for an index pulse".into());
+        refuse("index", "no homing method of this drive uses an index pulse".into());
     }
     let alone = *machine == Machine::default();
     if start != 0 && alone && !marked {
-        refuse("start", "no switch and no stop tells where the axis stands".into());
+        refuse("start", "has no effect without a switch, a hard stop or an index pulse".into());
     }
     problems
 }

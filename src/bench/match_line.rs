@@ -16,7 +16,12 @@ pub fn match_line(device: &mut Device, mode: Mode, told: bool) -> Result<(), Str
     let line = &model.line;
     let baud = code(&line.baud, |baud| *baud == settings.baud).ok_or_else(|| {
         let known: Vec<_> = line.baud.codes.values().map(u32::to_string).collect();
-        format!("{} can't do {} baud; it can do {}", model.name, settings.baud, known.join(", "))
+        format!(
+            "{} does not support {} baud; it supports {}",
+            model.name,
+            settings.baud,
+            known.join(", ")
+        )
     })?;
     let format = code(&line.format, |it| it.ascii == ascii && it.format == settings.format);
     let format = format.ok_or_else(|| {
@@ -25,18 +30,18 @@ pub fn match_line(device: &mut Device, mode: Mode, told: bool) -> Result<(), Str
         };
         let known: Vec<_> = line.format.codes.values().map(text).collect();
         if ascii && !line.format.codes.values().any(|it| it.ascii) {
-            return format!("{} can't do ASCII; it talks RTU only", model.name);
+            return format!("{} does not support ASCII, only RTU", model.name);
         }
         let kind = if ascii { "ASCII" } else { "RTU" };
         let (name, format) = (&model.name, settings.format);
-        format!("{name} can't do {kind} {format}; it can do {}", known.join(", "))
+        format!("{name} does not support {kind} {format}; it supports {}", known.join(", "))
     })?;
     if line.baud_switches != 0 {
         let shift = line.unit.switches;
         let row = model.map.row(line.format.row);
         if line.format.code_in(row.kind.value(row.init)) != format {
             return Err(format!(
-                "{} has switches for its speed and no setting of its format",
+                "{} has switches for its baud rate, and its character format is fixed",
                 model.name
             ));
         }
@@ -46,9 +51,7 @@ pub fn match_line(device: &mut Device, mode: Mode, told: bool) -> Result<(), Str
                 code if code == baud => {}
                 code => {
                     let says = line.baud.codes.get(&code).copied().unwrap_or_default();
-                    return Err(format!(
-                        "its switches say {says} baud, which does not go with a line at {mode}"
-                    ));
+                    return Err(format!("its switches set {says} baud, but the line is at {mode}"));
                 }
             }
         }
@@ -84,7 +87,9 @@ fn agrees<T: Copy>(
     let value = row.kind.value(raw);
     match coded.code_in(value) == code {
         true => Ok(()),
-        false => Err(format!("{} = {value} does not go with a line at {mode}", row.label())),
+        false => {
+            Err(format!("{} = {value} does not match the line, which is at {mode}", row.label()))
+        }
     }
 }
 

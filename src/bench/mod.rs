@@ -63,8 +63,8 @@ impl Library for BuiltinLibrary {
 pub fn no_model(name: &str) -> String {
     let names: Vec<_> = Builtin::all().map(|it| it.stem()).collect();
     match crate::problem::suggest::did_you_mean(name, names.iter().copied()) {
-        Some(advice) => format!("no model or product `{name}`; {advice}"),
-        None => format!("no model or product `{name}`; there are {}", names.join(", ")),
+        Some(advice) => format!("unknown model or product `{name}`; {advice}"),
+        None => format!("unknown model or product `{name}`; known: {}", names.join(", ")),
     }
 }
 

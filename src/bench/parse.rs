@@ -83,8 +83,7 @@ impl BenchReader<'_> {
         let items = match &lines {
             Some(Value::Sequence(items)) => items.as_slice(),
             Some(_) => {
-                self.problems
-                    .push(Problem::value(path.clone(), "a list of lines should stand here"));
+                self.problems.push(Problem::value(path.clone(), "expected a list of lines"));
                 &[]
             }
             None => &[],
@@ -101,7 +100,7 @@ impl BenchReader<'_> {
             let raw: Option<RawBenchLine> = section::read(value, &path, KEYS, &mut self.problems);
             let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
             if lines.iter().any(|it| it.name == line.name) {
-                let what = format!("there is a line `{}` above", line.name);
+                let what = format!("duplicate line name `{}`", line.name);
                 let advice = "give each line its own `name`";
                 self.problems.push(Problem::value(path.key("name"), what).advise(advice));
             }
@@ -109,7 +108,7 @@ impl BenchReader<'_> {
             lines.push(line);
         }
         if items.is_empty() && self.problems.is_empty() {
-            self.problems.push(Problem::key(path, "a bench needs a line"));
+            self.problems.push(Problem::key(path, "a bench needs at least one line"));
         }
         Bench { seed, lines }
     }
@@ -132,7 +131,7 @@ impl BenchReader<'_> {
             devices.push(self.device(drive, &path.key("drives").index(i)));
         }
         if devices.is_empty() {
-            self.problems.push(Problem::key(path.key("drives"), "a line needs a drive"));
+            self.problems.push(Problem::key(path.key("drives"), "a line needs at least one drive"));
         }
         let mut devices: Vec<Device> = devices.into_iter().collect::<Option<_>>()?;
         for (i, device) in devices.iter_mut().enumerate() {
@@ -158,14 +157,14 @@ impl BenchReader<'_> {
             }
             (None, _) => {
                 let what = "this line has no port";
-                let advice = "give one of pty, serial, tcp, rtu_over_tcp";
+                let advice = "add one of pty, serial, tcp, rtu_over_tcp";
                 self.problems.push(Problem::value(path.clone(), what).advise(advice));
                 None
             }
             (Some(_), Some(second)) => {
-                let what = "a line has one port, and this is another";
+                let what = "a line has only one port, and this is a second";
                 let path = path.key(second.key());
-                self.problems.push(Problem::key(path, what).advise("make it two lines"));
+                self.problems.push(Problem::key(path, what).advise("use two lines"));
                 None
             }
         }
@@ -185,14 +184,14 @@ impl BenchReader<'_> {
         ];
         for (key, _) in given.into_iter().filter(|(_, given)| *given) {
             let why = match (port, raw.ascii) {
-                (PortSpec::Tcp(_), _) => "in Modbus TCP",
+                (PortSpec::Tcp(_), _) => "on Modbus TCP",
                 (PortSpec::Pty(_), _) if key == "match_baud" => continue,
-                _ if key == "match_baud" => "on a port that is no pseudo-terminal",
-                (_, Some(true)) if key == "strict" => "in ASCII framing",
+                _ if key == "match_baud" => "on a port other than a pseudo-terminal",
+                (_, Some(true)) if key == "strict" => "with ASCII framing",
                 _ => continue,
             };
-            let what = format!("`{key}` changes nothing {why}");
-            self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+            let what = format!("`{key}` has no effect {why}");
+            self.problems.push(Problem::key(path.key(key), what).advise("remove it"));
         }
     }
 
@@ -295,7 +294,7 @@ impl BenchReader<'_> {
             for (i, device) in devices.iter_mut().enumerate() {
                 if let Err(what) = match_line(device, wire.mode, told) {
                     let path = path.key("drives").index(i).key("model");
-                    let advice = "choose `settings` that all drives of the line know";
+                    let advice = "choose `settings` that all drives on the line support";
                     self.problems.push(Problem::value(path, what).advise(advice));
                 }
             }
@@ -328,7 +327,8 @@ impl BenchReader<'_> {
                 else {
                     continue;
                 };
-                let what = format!("unit {unit} is taken by drive {} of this line", other + 1);
+                let what =
+                    format!("unit {unit} is already used by drive {} on this line", other + 1);
                 let path = path.key("drives").index(i).key("unit");
                 self.problems
                     .push(Problem::value(path, what).advise("give each drive its own `unit`"));

@@ -111,7 +111,7 @@ pub struct RawBenchDrive {
 /// An address is a number to YAML, a name is a text: both are keys here.
 fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i64>, D::Error> {
     #[derive(Deserialize, PartialEq, Eq, PartialOrd, Ord)]
-    #[serde(untagged, expecting = "a register is a name or an address")]
+    #[serde(untagged, expecting = "expected the name or the address of a register")]
     enum BenchKey {
         Address(u16),
         Name(String),

@@ -86,10 +86,10 @@ pub enum Reply {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum CommandError {
     /// No such drive.
-    #[error("there is no drive {0} on this line")]
+    #[error("no drive {0} on this line")]
     NoDrive(u16),
     /// No such terminal.
-    #[error("the drive has {have} input terminals, no number {got}")]
+    #[error("the drive has {have} input terminals; there is no number {got}")]
     NoTerminal {
         /// Asked for, from 0.
         got: u8,
@@ -97,7 +97,7 @@ pub enum CommandError {
         have: usize,
     },
     /// A contact does not bounce so.
-    #[error("a contact bounces 1 to 65535 times, with 1us to 1min from edge to edge")]
+    #[error("a contact bounces 1 to 65535 times, with 1us to 1min between edges")]
     NoBounce,
     /// Nothing can happen in a drive that has no power.
     #[error("the drive has no power")]
@@ -106,13 +106,13 @@ pub enum CommandError {
     #[error("the model has no alarm for `{0}`")]
     NoAlarm(&'static str),
     /// Another rule has the name.
-    #[error("there is a fault rule `{0}` on this line already")]
+    #[error("duplicate fault rule `{0}` on this line")]
     FaultTaken(String),
     /// No such rule.
-    #[error("there is no fault rule `{0}` on this line")]
+    #[error("no fault rule `{0}` on this line")]
     NoFault(String),
     /// The rule can do nothing on this line.
-    #[error("`{name}` can do nothing here: {why}")]
+    #[error("`{name}` has no effect here: {why}")]
     IdleFault {
         /// The rule.
         name: String,

@@ -70,7 +70,7 @@ fn usage(error: &clap::Error) -> Result<(), CliError> {
     match printed {
         _ if error.use_stderr() => Err(CliError::invalid("")),
         Err(why) if why.kind() != ErrorKind::BrokenPipe => {
-            let text = format!("can't write to stdout: {}", plain(&why));
+            let text = format!("cannot write to stdout: {}", plain(&why));
             Err(CliError { code: FAILED, text })
         }
         _ => Ok(()),

@@ -11,7 +11,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
     match printed {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError {
             code: FAILED,
-            text: format!("can't write to stdout: {}", plain(&error)),
+            text: format!("cannot write to stdout: {}", plain(&error)),
         }),
         _ => Ok(()),
     }

@@ -25,7 +25,7 @@ use std::sync::Arc;
 pub fn run(args: RunArgs) -> Result<(), CliError> {
     diagnose(if args.quiet { Diagnostics::Quiet } else { Diagnostics::Normal });
     if !(1e-3..=1e6).contains(&args.rate) {
-        return Err(CliError::invalid("--rate takes a number from 0.001 to 1000000"));
+        return Err(CliError::invalid("--rate must be from 0.001 to 1000000"));
     }
     let mut bit_overrides = flags(&args).map_err(CliError::invalid)?;
     let (store, state) = args.state.as_deref().map(StateArg::open).transpose()?.unzip();
@@ -71,7 +71,7 @@ fn destination(path: Option<&Path>) -> Result<Option<Destination>, CliError> {
     let find = |path: &Path| {
         Destination::find(path).map_err(|error| CliError {
             code: FAILED,
-            text: format!("can't write {}: {}", path.display(), plain(&error)),
+            text: format!("cannot write {}: {}", path.display(), plain(&error)),
         })
     };
     path.map(find).transpose()
@@ -133,7 +133,7 @@ fn lines(
 fn play(file: &Path, args: &RunArgs, bench: &Bench) -> Result<Play, CliError> {
     let name = file.display().to_string();
     let text = read_text(file)
-        .map_err(|error| CliError::invalid(format!("can't read {name}: {}", plain(&error))))?;
+        .map_err(|error| CliError::invalid(format!("cannot read {name}: {}", plain(&error))))?;
     let scenario = scenario::parse(&text, &bench.lines)
         .map_err(|problems| CliError::invalid(render(&problems, &name, &text)))?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -221,7 +221,7 @@ fn refuse_flags_of_a_line(args: &RunArgs) -> Result<(), CliError> {
     ];
     match flags.iter().find(|(_, given)| *given) {
         Some((flag, _)) => {
-            let text = format!("{flag} goes with a model; a bench file says such things itself");
+            let text = format!("{flag} applies to a model only; in a bench file, set it there");
             Err(CliError::invalid(text))
         }
         None => Ok(()),
@@ -236,28 +236,30 @@ fn override_keys(
     let (mut choices, mut set) = (Choices::new(), BTreeMap::new());
     for override_key in &args.set {
         let Some((key, value)) = override_key.split_once('=') else {
-            return Err(CliError::invalid(format!("--set {override_key}: write KEY=VALUE")));
+            return Err(CliError::invalid(format!("--set {override_key}: expected KEY=VALUE")));
         };
         if let Some(option) = model.options.iter().find(|option| option.name == key) {
             if !option.choices.iter().any(|choice| choice == value) {
                 let all = option.choices.join(", ");
-                return Err(CliError::invalid(format!("--set {override_key}: {key} takes {all}")));
+                return Err(CliError::invalid(format!(
+                    "--set {override_key}: {key} accepts {all}"
+                )));
             }
             if choices.insert(key.into(), value.into()).is_some() {
                 return Err(CliError::invalid(format!(
-                    "--set {override_key}: {key} is chosen twice"
+                    "--set {override_key}: {key} is given twice"
                 )));
             }
             continue;
         }
         let number = parse_integer(value).ok_or_else(|| {
             let text = format!(
-                "--set {override_key}: `{value}` is not a whole number, and {key} is not an option"
+                "--set {override_key}: `{value}` is not an integer, and {key} is not an option"
             );
             CliError::invalid(text)
         })?;
         if set.insert(key.into(), number).is_some() {
-            return Err(CliError::invalid(format!("--set {override_key}: {key} is set twice")));
+            return Err(CliError::invalid(format!("--set {override_key}: {key} is given twice")));
         }
     }
     Ok((choices, set))
@@ -286,7 +288,7 @@ fn line(
     let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
     let wire = WireSpec { mode, match_baud: args.match_baud, ..own };
     if args.match_baud && !matches!(port, PortSpec::Pty(_)) {
-        let text = "--match-baud: only a pseudo-terminal carries bytes at the wrong speed";
+        let text = "--match-baud applies to a pseudo-terminal only";
         return Err(CliError::invalid(text));
     }
     if !matches!(port, PortSpec::Tcp(_)) {
@@ -295,7 +297,7 @@ fn line(
     } else if args.ascii || mode != own.mode {
         return Err(CliError { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     } else if args.pacing == PacingArg::Line {
-        let text = "--pacing line: Modbus TCP has no characters that take time";
+        let text = "--pacing line does not apply to Modbus TCP, which has no character times";
         return Err(CliError::invalid(text));
     }
     let pacing = match args.pacing {

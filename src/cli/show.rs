@@ -222,7 +222,7 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
         }
         Shows::InputTerminals(_) => "input terminals".into(),
         Shows::OutputTerminals(_) => "output terminals".into(),
-        Shows::PastAlarm(_) => "alarms of the past".into(),
+        Shows::PastAlarm(_) => "alarm history".into(),
     });
     let reaction = || match model.wiring.reaction(id) {
         Reaction::None => goes_by(model, id),
@@ -244,8 +244,8 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
             };
             actions.iter().map(action).collect::<Vec<_>>().join(", ")
         }
-        Reaction::Line => "how the drive is reached".into(),
-        Reaction::Timeout => "silence of the master".into(),
+        Reaction::Line => "communication settings".into(),
+        Reaction::Timeout => "communication watchdog".into(),
     };
     Some(shows.unwrap_or_else(reaction))
 }
@@ -341,7 +341,7 @@ fn kept(model: &Model, row: &Row) -> String {
         _ if row.autosave => "with every write".into(),
         (_, false, Some(window)) if window.base == 0 => "with every write".into(),
         (_, false, Some(window)) => format!("when written through window {}", window.name),
-        (_, false, None) if stores => "when all values are stored".into(),
+        (_, false, None) if stores => "when all parameters are stored".into(),
         _ => "never".into(),
     }
 }

@@ -21,7 +21,7 @@ impl StateArg {
     pub fn open(path: &Path) -> Result<(Store, Self), CliError> {
         let file = path.display().to_string();
         let (store, text) = Store::open(path)
-            .map_err(|error| CliError::invalid(format!("can't use {file}: {}", plain(&error))))?;
+            .map_err(|error| CliError::invalid(format!("cannot use {file}: {}", plain(&error))))?;
         let mut state = Self { file, ..Self::default() };
         if let Some(text) = text {
             state.text = text;
@@ -39,7 +39,8 @@ impl StateArg {
     fn refused(&self, problems: &[Problem]) -> CliError {
         let Self { file, text, .. } = self;
         let told = render(problems, file, text);
-        let advice = format!("{file} is as it was: mend it, move it away, or give another --state");
+        let advice =
+            format!("{file} was not changed: correct it, move it away, or give another --state");
         CliError::invalid(format!("{told}{advice}"))
     }
 }

@@ -374,7 +374,7 @@ impl Drive {
 
     fn answer_causes(&self, causes: Causes) -> Refusal {
         let refusal = causes.refusal(&self.model.line.refuse);
-        refusal.expect("the model was checked: each cause that it can meet has a rung")
+        refusal.expect("the model was checked: each cause that can occur has an exception code")
     }
 
     fn power_on(&mut self, now: Instant) {

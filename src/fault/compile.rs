@@ -103,8 +103,8 @@ impl FaultReader<'_> {
         for (key, _) in own.iter().filter(|(key, given)| *given && !kind.keys().contains(key)) {
             let with = FaultKind::ALL.iter().filter(|kind| kind.keys().contains(key));
             let with: Vec<_> = with.map(|kind| kind.name()).collect();
-            let what = format!("`{key}` changes nothing for `{}`", kind.name());
-            let advice = format!("it goes with {}", with.join(", "));
+            let what = format!("`{key}` does not apply to `{}`", kind.name());
+            let advice = format!("it applies to {}", with.join(", "));
             self.problems.push(Problem::key(self.path.key(key), what).advise(advice));
         }
         let turns = [
@@ -114,16 +114,16 @@ impl FaultReader<'_> {
             ("count", raw.count.is_some()),
         ];
         for (key, _) in turns.iter().filter(|(_, given)| *given && kind.preset().is_some()) {
-            let what = format!("a preset takes no `{key}`");
+            let what = format!("a preset does not take `{key}`");
             let problem = Problem::key(self.path.key(key), what);
-            self.problems.push(problem.advise("write out the rules that you want"));
+            self.problems.push(problem.advise("list the rules of the preset instead"));
         }
         self.refuse_incomplete_line_behaviour();
         if let Some(why) = kind.impossible_on_tcp().filter(|_| self.site.is_tcp()) {
             self.refuse("do", why, None);
         }
         if raw.unit == Some(BROADCAST) && !kind.takes_broadcasts() {
-            let what = format!("nobody replies to a broadcast, so `{}` has no effect", kind.name());
+            let what = format!("a broadcast has no reply, so `{}` has no effect", kind.name());
             self.refuse("unit", what, None);
         }
     }
@@ -147,7 +147,7 @@ impl FaultReader<'_> {
             self.problems.push(Problem::key(self.path.key(key), what));
         }
         if let Some(key) = line_behaviour.shared(self.site.line_behaviour()) {
-            let what = format!("`{preset}` brings a `{key}`, and the line has one");
+            let what = format!("`{preset}` sets `{key}`, which this line already has");
             self.refuse("do", what, None);
         }
     }
@@ -167,9 +167,9 @@ impl FaultReader<'_> {
         };
         let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
         if name.is_empty() || !name.chars().all(plain) {
-            self.refuse("name", "a name has letters, digits, `_`, `-` and `.`", None);
+            self.refuse("name", "a name may contain letters, digits, `_`, `-` and `.`", None);
         } else if !free(name) {
-            let what = format!("there is a rule `{name}` on this line already");
+            let what = format!("duplicate rule name `{name}` on this line");
             self.refuse("name", what, Some("give each rule its own `name`"));
         }
         name.clone()
@@ -179,7 +179,7 @@ impl FaultReader<'_> {
         let raw = self.raw;
         let unlimited = 1..=u64::MAX;
         if let Some(probability) = raw.probability.filter(|it| !(*it > 0.0 && *it <= 1.0)) {
-            let what = format!("a probability is above 0 and at most 1, not {probability}");
+            let what = format!("`probability` must be above 0 and at most 1, not {probability}");
             self.refuse("probability", what, None);
         }
         When {
@@ -202,7 +202,7 @@ impl FaultReader<'_> {
             Some(RawFunctions::Many(functions)) => functions.clone(),
         };
         if functions.is_empty() {
-            self.refuse("function", "an empty list holds for no request", Some("leave it out"));
+            self.refuse("function", "an empty list matches no request", Some("remove it"));
         }
         for function in &functions {
             self.within("function", Some(*function), 1..=0x7F);
@@ -230,7 +230,7 @@ impl FaultReader<'_> {
                 Span::new(first, (last - first).saturating_add(1)).into_iter().collect()
             }
             Some(_) => {
-                self.refuse("register", "a span goes from the lower address to the higher", None);
+                self.refuse("register", "a range must begin with its lower address", None);
                 Vec::new()
             }
             None => {
@@ -245,7 +245,8 @@ impl FaultReader<'_> {
         match Duration::try_from_secs_f64(seconds) {
             Ok(after) => Some(Instant::ZERO + after),
             Err(_) => {
-                self.refuse(key, format!("{seconds} s is no time of a run"), None);
+                let what = if seconds < 0.0 { "not be negative" } else { "be finite" };
+                self.refuse(key, format!("`{key}` must {what}"), None);
                 None
             }
         }
@@ -255,7 +256,7 @@ impl FaultReader<'_> {
         let (from, until) = (self.raw.from.unwrap_or(0.0), self.raw.until?);
         let end = self.instant("until", Some(until))?;
         if until <= from {
-            let what = format!("there is no time from {from} s until {until} s");
+            let what = format!("`until` must be later than `from`, {from} s");
             self.refuse("until", what, None);
         }
         Some(end)
@@ -283,7 +284,7 @@ impl FaultReader<'_> {
             },
             FaultKind::WrongUnit => {
                 if let Some(to) = raw.to.filter(|to| raw.unit == Some(*to)) {
-                    self.refuse("to", format!("unit {to} is the right one"), None);
+                    self.refuse("to", format!("`to` must not be the addressed unit, {to}"), None);
                 }
                 Act::WrongUnit { to: raw.to }
             }
@@ -322,7 +323,7 @@ impl FaultReader<'_> {
                 Some(Act::Delay { least_ms, most_ms })
             }
             _ => {
-                let what = "a delay is a number of milliseconds above 0, or two such as 50-200";
+                let what = "`ms` must be above 0, or a range such as 50-200";
                 self.refuse("ms", what, None);
                 None
             }
@@ -348,8 +349,8 @@ impl FaultReader<'_> {
         let value = value?;
         if !range.contains(&value) {
             let what = match value < *range.start() {
-                true => format!("`{key}` is {} at least, not {value}", range.start()),
-                false => format!("`{key}` is {} at most, not {value}", range.end()),
+                true => format!("`{key}` must be at least {}", range.start()),
+                false => format!("`{key}` must be at most {}", range.end()),
             };
             self.refuse(key, what, None);
         }

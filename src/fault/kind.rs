@@ -35,26 +35,26 @@ macro_rules! kinds {
 }
 
 kinds! {
-    LoseRequest "lose_request" "The drive never sees the request." [],
+    LoseRequest "lose_request" "The request never reaches the drive." [],
     LoseReply "lose_reply" "The drive executes the request, and its reply is lost." [],
     BadCrc "bad_crc" "The checksum of the reply is wrong: its bits are inverted." [],
-    FlipBits "flip_bits" "Some bits of the reply are turned over." ["bits"],
+    FlipBits "flip_bits" "Some bits of the reply are flipped." ["bits"],
     Truncate "truncate" "The end of the reply is missing." ["bytes"],
     Extra "extra" "Random bytes follow the reply." ["bytes"],
     Garbage "garbage" "Random bytes come before the reply." ["bytes"],
-    Delay "delay" "The reply leaves later." ["ms"],
-    Late "late" "The reply waits for the next request on its link and leaves first then." [],
-    Duplicate "duplicate" "The reply comes twice." [],
-    Split "split" "The reply leaves in two pieces." ["at" "gap_ms"],
+    Delay "delay" "The reply is delayed." ["ms"],
+    Late "late" "The reply is held back until the next request on its link, and then sent first." [],
+    Duplicate "duplicate" "The reply is sent twice." [],
+    Split "split" "The reply is sent in two pieces." ["at" "gap_ms"],
     WrongUnit "wrong_unit" "The reply names another unit." ["to"],
     WrongFunction "wrong_function" "The reply names another function." ["to"],
-    Exception "exception" "An exception answers, and the drive executes nothing." ["code"],
-    Busy "busy" "Exception 06, server busy, answers, and the drive executes nothing." [],
+    Exception "exception" "An exception is returned, and the drive executes nothing." ["code"],
+    Busy "busy" "Exception 06, server device busy, is returned, and the drive executes nothing." [],
     Echo "echo" "The request comes back before the reply, as on a 2-wire line whose receiver stays on." [],
     NoisyCable "noisy_cable" "Preset: a cable that picks up noise." [],
-    SleepyDrive "sleepy_drive" "Preset: a drive that answers slowly, and sometimes not at all." [],
-    UsbAdapter "usb_adapter" "Preset: a USB adapter that hands bytes over in lumps, and now and then loses some." [],
-    CrowdedLine "crowded_line" "Preset: others talk on the line, and now and then at the same time." [],
+    SleepyDrive "sleepy_drive" "Preset: a drive that replies slowly, and sometimes not at all." [],
+    UsbAdapter "usb_adapter" "Preset: a USB adapter that delivers bytes in chunks and occasionally loses some." [],
+    CrowdedLine "crowded_line" "Preset: other traffic on the line, which occasionally collides with ours." [],
 }
 
 impl FaultKind {
@@ -110,10 +110,10 @@ impl FaultKind {
     /// Why it can do nothing on Modbus TCP, if it can't.
     pub fn impossible_on_tcp(self) -> Option<&'static str> {
         match self {
-            Self::BadCrc => Some("a frame of Modbus TCP has no checksum"),
-            Self::Echo => Some("nothing is echoed on Modbus TCP"),
-            Self::UsbAdapter => Some("no serial adapter stands before Modbus TCP"),
-            Self::CrowdedLine => Some("nobody else talks on Modbus TCP"),
+            Self::BadCrc => Some("Modbus TCP frames have no checksum"),
+            Self::Echo => Some("Modbus TCP has no echo"),
+            Self::UsbAdapter => Some("Modbus TCP has no serial adapter"),
+            Self::CrowdedLine => Some("Modbus TCP has no shared line"),
             _ => None,
         }
     }

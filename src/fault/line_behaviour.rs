@@ -80,7 +80,7 @@ impl fmt::Display for LineBehaviour {
         });
         let told = [
             (self.pacing != Pacing::Ideal).then(|| "paced replies".to_owned()),
-            self.chunk.map(|latency| format!("lumps of {latency:?}")),
+            self.chunk.map(|latency| format!("chunks of {latency:?}")),
             self.echo.then(|| "echo".to_owned()),
             chatter,
         ];

@@ -54,7 +54,7 @@ pub struct RawFault {
 /// One function code, or several.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a function code is a number from 1 to 127, or a list of such")]
+#[serde(untagged, expecting = "expected a function code from 1 to 127, or a list of them")]
 pub enum RawFunctions {
     /// One.
     One(u8),
@@ -65,7 +65,10 @@ pub enum RawFunctions {
 /// Registers.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a register is an address, a span such as 0x20-0x25, or a name")]
+#[serde(
+    untagged,
+    expecting = "expected an address, a range such as 0x20-0x25, or the name of a register"
+)]
 pub enum RawFaultRegister {
     /// One address.
     Address(u16),
@@ -76,7 +79,7 @@ pub enum RawFaultRegister {
 /// A time in milliseconds.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a number of milliseconds, or a range such as 50-200")]
+#[serde(untagged, expecting = "expected milliseconds, or a range such as 50-200")]
 pub enum RawMillis {
     /// Always the same.
     Fixed(u32),

@@ -57,7 +57,7 @@ impl Cut {
             let key = key.trim();
             if cut.places.contains_key(key) {
                 let mark = Some(mark(spec, &place_of(spec, key)));
-                let problem = Problem::key(Path::root().key(key), "this key stands here twice");
+                let problem = Problem::key(Path::root().key(key), "duplicate key");
                 problems.push(Problem { mark, ..problem });
                 continue;
             }

@@ -49,11 +49,12 @@ fn unroll(
 ) {
     let [first, last] = repeat.n;
     if first > last {
-        let what = format!("copies {first} to {last} are none");
-        return problems.push(Problem::value(path.key("n"), what).advise("first, then last"));
+        let what = format!("the range {first} to {last} is empty");
+        return problems
+            .push(Problem::value(path.key("n"), what).advise("give the lower number first"));
     }
     if repeat.stride == 0 && first != last {
-        let what = "at a stride of 0 all copies would lie at one address";
+        let what = "with a stride of 0 all copies have the same address";
         return problems.push(Problem::value(path.key("stride"), what));
     }
     let copies = usize::from(last - first) + 1;
@@ -68,14 +69,14 @@ fn unroll(
     for (key, row) in &repeat.registers {
         let path = path.key("registers").key(key);
         if first != last && !key.contains("{n") {
-            let what = "every copy would get the same name";
-            problems.push(Problem::key(path, what).advise("put {n} into the key"));
+            let what = "all copies would have the same name";
+            problems.push(Problem::key(path, what).advise("add {n} to the key"));
             continue;
         }
         for n in first..=last {
             let at = u32::from(row.at) + u32::from(n - first) * u32::from(repeat.stride);
             let Ok(at) = u16::try_from(at) else {
-                let what = format!("copy {n} would lie at 0x{at:X}, beyond 0xFFFF");
+                let what = format!("copy {n} would be at 0x{at:X}, above 0xFFFF");
                 problems.push(Problem::value(path.key("at"), what));
                 break;
             };
@@ -99,8 +100,9 @@ fn text_size(row: &RawRow) -> usize {
 fn fill(area: &RawFill, path: &Path, entries: &mut Vec<ExpandedRow>, problems: &mut Vec<Problem>) {
     let [first, last] = area.span;
     if first > last {
-        let what = format!("addresses 0x{first:04X} to 0x{last:04X} are none");
-        return problems.push(Problem::value(path.key("span"), what).advise("first, then last"));
+        let what = format!("the range 0x{first:04X} to 0x{last:04X} is empty");
+        return problems
+            .push(Problem::value(path.key("span"), what).advise("give the lower number first"));
     }
     if usize::from(last - first) + entries.len() > ROWS_MAX {
         return problems.push(Problem::value(path.key("span"), "more rows than a model can have"));
@@ -112,8 +114,8 @@ fn fill(area: &RawFill, path: &Path, entries: &mut Vec<ExpandedRow>, problems: &
         return problems.push(Problem::value(path.key("span"), what));
     }
     if !area.id.contains("{n") {
-        let what = "every address would get the same name";
-        return problems.push(Problem::value(path.key("id"), what).advise("put {n} into it"));
+        let what = "all rows would have the same name";
+        return problems.push(Problem::value(path.key("id"), what).advise("add {n} to it"));
     }
     let mut taken = vec![false; 0x1_0000];
     for ExpandedRow { row, .. } in entries.iter() {

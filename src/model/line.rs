@@ -168,50 +168,50 @@ pub(super) fn compile(
 ) -> Option<LineRules> {
     let path = Path::root().key("line");
     if raw.functions.is_empty() {
-        let what = "a drive without functions answers nothing";
+        let what = "a drive needs at least one function code";
         problems.push(
             Problem::value(path.key("functions"), what)
-                .advise("list those of 0x03, 0x06 and 0x10 that it knows"),
+                .advise("list those of 0x03, 0x06 and 0x10 that it supports"),
         );
     }
     for (i, function) in raw.functions.iter().enumerate() {
         if ![READ, WRITE_ONE, WRITE_MANY].contains(function) {
-            let what = format!("function 0x{function:02X} is not one that can be emulated");
+            let what = format!("function code 0x{function:02X} is not supported");
             let path = path.key("functions").index(i);
-            problems.push(Problem::value(path, what).advise("0x03, 0x06 and 0x10 are"));
+            problems.push(Problem::value(path, what).advise("supported: 0x03, 0x06, 0x10"));
         }
     }
     within(raw.max_read, 1..=125, &path.key("max_read"), problems);
     within(raw.max_write, 1..=123, &path.key("max_write"), problems);
     if !(1.5..=100.0).contains(&raw.silence) {
-        let what = format!("{} characters of silence are not between 1.5 and 100", raw.silence);
+        let what = format!("`silence` must be between 1.5 and 100 characters, not {}", raw.silence);
         problems.push(Problem::value(path.key("silence"), what));
     }
     let reply_after = raw.reply_after.as_deref();
     let reply_after = reply_after.and_then(|it| duration(it, &path.key("reply_after"), problems));
     if reply_after.is_some_and(|it| it > LONGEST_REPLY) {
-        let what = "a drive replies within 10 s, or nobody waits for it";
+        let what = "`reply_after` must be at most 10 s";
         problems.push(Problem::value(path.key("reply_after"), what));
     }
     if raw.crc_error.is_some_and(|code| code == 0 || code > 0x7F) {
-        let what = "an exception code lies between 0x01 and 0x7F";
-        problems.push(Problem::value(path.key("crc_error"), what).advise("null is silence"));
+        let what = "an exception code must be between 0x01 and 0x7F";
+        problems.push(Problem::value(path.key("crc_error"), what).advise("use null for no reply"));
     }
     let unit_path = path.key("unit");
     if raw.unit.switches.is_some_and(|count| !(1..=8).contains(&count)) {
-        let what = "there are 1 to 8 address switches, or none";
+        let what = "`switches` must be between 1 and 8";
         problems.push(Problem::value(unit_path.key("switches"), what));
     }
     let unit = rows.find(&raw.unit.register, &unit_path.key("register"), problems);
     if let Some(row) = unit.map(|id| rows.map.row(id)).filter(|row| !row.admits(0))
         && raw.unit.zero != 0
     {
-        let what = format!("`zero` changes nothing, since {} is never 0", row.id);
-        problems.push(Problem::key(unit_path.key("zero"), what).advise("leave it out"));
+        let what = format!("`zero` has no effect: {} is never 0", row.id);
+        problems.push(Problem::key(unit_path.key("zero"), what).advise("remove it"));
     }
     let baud_path = path.key("baud");
     if let Some(code) = raw.baud.codes.iter().find(|(_, baud)| !(50..=4_000_000).contains(*baud)) {
-        let what = format!("{} is no baud rate", code.1);
+        let what = format!("{} is not a baud rate", code.1);
         problems.push(Problem::value(baud_path.key("codes").key(code.0), what));
     }
     let baud = rows.find(&raw.baud.register, &baud_path.key("register"), problems);
@@ -254,10 +254,10 @@ fn baud_switches_fit(raw: &RawLine, path: &Path, problems: &mut Vec<Problem>) {
     let Some(count) = raw.baud.switches else { return };
     let room = 8u8.saturating_sub(raw.unit.switches.unwrap_or(0));
     if !(1..=room).contains(&count) {
-        let what = "a drive has 1 to 8 switches for its address and its speed together";
+        let what = "address and baud rate switches together must be between 1 and 8";
         problems.push(Problem::value(path.key("switches"), what));
     } else if let Some(code) = (0..1i64 << count).find(|code| !raw.baud.codes.contains_key(code)) {
-        let what = format!("{count} switches can say {code}, and no code stands for that");
+        let what = format!("{count} switches can be set to {code}, which is not in `codes`");
         problems.push(Problem::value(path.key("codes"), what));
     }
 }
@@ -269,8 +269,9 @@ fn within(
     problems: &mut Vec<Problem>,
 ) {
     if !allowed.contains(&value) {
-        let what = format!("{value} is not between {} and {}", allowed.start(), allowed.end());
-        problems.push(Problem::value(path.clone(), what).advise("that is what a frame can hold"));
+        let what =
+            format!("must be between {} and {}, not {value}", allowed.start(), allowed.end());
+        problems.push(Problem::value(path.clone(), what).advise("a frame cannot hold more"));
     }
 }
 
@@ -306,12 +307,12 @@ pub(super) fn coded<T>(
         }
     };
     for code in codes.keys().filter(|code| !holds(**code)) {
-        let what = format!("{} never holds {code}", row.id);
+        let what = format!("{} is never {code}", row.id);
         problems.push(Problem::key(path.key("codes").key(code), what));
     }
     let init = of(row.kind.value(row.init));
     if row.admits(row.kind.value(row.init)) && !codes.contains_key(&init) {
-        let what = format!("{} leaves the factory as {init}, and no code stands for that", row.id);
+        let what = format!("the factory value of {}, {init}, is not in `codes`", row.id);
         problems.push(Problem::key(path.key("codes"), what));
     }
 }
@@ -368,7 +369,7 @@ fn refuse(raw: &RawLine, rows: &Compiled, path: &Path, problems: &mut Vec<Proble
     for (i, rung) in raw.refuse.iter().enumerate() {
         let path = path.index(i);
         if rung.len() != 1 {
-            let what = "one cause a rung, since their order matters";
+            let what = "one cause per entry: their order matters";
             problems.push(Problem::value(path.clone(), what).advise("- {function: 0x01}"));
         }
         for (name, code) in rung {
@@ -377,16 +378,16 @@ fn refuse(raw: &RawLine, rows: &Compiled, path: &Path, problems: &mut Vec<Proble
                 let causes = || Cause::ALL.iter().map(|cause| cause.name());
                 meant.extend(suggest::nearest(name, causes()).and_then(Cause::parse));
                 let advice = suggest::did_you_mean(name, causes());
-                let what = format!("no cause of refusal `{name}`");
+                let what = format!("unknown refusal cause `{name}`");
                 problems.push(Problem::key(path, what).advise_if(advice));
                 continue;
             };
             if *code == 0 || *code > 0x7F {
-                let what = "an exception code lies between 0x01 and 0x7F";
+                let what = "an exception code must be between 0x01 and 0x7F";
                 problems.push(Problem::value(path.clone(), what));
             }
             if ladder.iter().any(|(it, _)| *it == cause) {
-                problems.push(Problem::key(path, "this cause has a rung above"));
+                problems.push(Problem::key(path, "duplicate cause"));
                 continue;
             }
             ladder.push((cause, *code));
@@ -394,9 +395,9 @@ fn refuse(raw: &RawLine, rows: &Compiled, path: &Path, problems: &mut Vec<Proble
     }
     let listed: Vec<Cause> = ladder.iter().map(|(cause, _)| *cause).chain(meant).collect();
     for cause in raisable(raw, rows).into_iter().filter(|cause| !listed.contains(cause)) {
-        let what = format!("the drive can refuse for `{}`, but no rung answers it", cause.name());
-        let advice =
-            format!("add `- {{{}: CODE}}` where it belongs: {}", cause.name(), cause.about());
+        let what =
+            format!("the drive can refuse for `{}`, which has no exception code", cause.name());
+        let advice = format!("add `- {{{}: CODE}}`: {}", cause.name(), cause.about());
         problems.push(Problem::key(path.clone(), what).advise(advice));
     }
     Refuse(ladder)

@@ -106,15 +106,15 @@ fn compile(
 
 fn check_identity(raw: &RawModel, problems: &mut Vec<Problem>) {
     if raw.format != 1 {
-        let what = format!("this program reads format 1, not {}", raw.format);
+        let what = format!("unsupported format {}; this version reads format 1", raw.format);
         problems.push(Problem::value(Path::root().key("format"), what));
     }
     let name = &raw.model.name;
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if name.is_empty() || !name.chars().all(plain) {
-        let what = format!("`{name}` is no name of a model");
+        let what = format!("invalid model name `{name}`");
         let path = Path::root().key("model").key("name");
-        problems.push(Problem::value(path, what).advise("small letters, digits and `-`"));
+        problems.push(Problem::value(path, what).advise("use lower-case letters, digits and `-`"));
     }
 }
 
@@ -126,7 +126,7 @@ fn stations(raw: &RawModel, rows: &rows::Compiled, problems: &mut Vec<Problem>) 
     for (i, station) in raw.stations.iter().enumerate() {
         let path = Path::root().key("stations").index(i);
         if stations.iter().any(|it| it.name == station.name) {
-            let what = format!("there is a station `{}` above", station.name);
+            let what = format!("duplicate station name `{}`", station.name);
             problems.push(Problem::value(path.key("name"), what));
         }
         let path = path.key("init");
@@ -136,7 +136,7 @@ fn stations(raw: &RawModel, rows: &rows::Compiled, problems: &mut Vec<Problem>) 
             let Some(row) = rows.find(id, &path, problems) else { continue };
             if !rows.map.row(row).admits(*value) {
                 let what =
-                    format!("{value} lies outside the range {}", rows.map.row(row).range_text());
+                    format!("{value} is outside the range {}", rows.map.row(row).range_text());
                 problems.push(Problem::value(path, what));
             }
             init.push((row, rows.map.row(row).kind.raw(*value)));

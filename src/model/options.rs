@@ -48,18 +48,18 @@ pub(super) fn choose(
     for (name, option) in options {
         let path = Path::root().key("options").key(name);
         if !option.choices.contains_key(&option.default) {
-            let what = format!("no choice `{}`", option.default);
+            let what = format!("unknown choice `{}`", option.default);
             let choices = option.choices.keys().map(String::as_str);
             let advice = suggest::did_you_mean(&option.default, choices);
             problems.push(Problem::value(path.key("default"), what).advise_if(advice));
         }
         if option.choices.len() < 2 {
-            let what = "an option needs two choices or more";
+            let what = "an option needs at least two choices";
             problems.push(Problem::key(path.key("choices"), what));
         }
         for (choice, fragment) in &option.choices {
             if !fragment.is_mapping() {
-                let what = "a choice is a map, `{}` for the file as it is";
+                let what = "a choice must be a map; `{}` leaves the file as it is";
                 problems.push(Problem::value(path.key("choices").key(choice), what));
             }
         }
@@ -68,14 +68,14 @@ pub(super) fn choose(
     for (name, choice) in override_keys {
         let path = Path::root().key("options").key(name);
         let Some(option) = options.get(name) else {
-            let what = format!("no option `{name}`");
+            let what = format!("unknown option `{name}`");
             let advice = suggest::did_you_mean(name, options.keys().map(String::as_str));
             problems.push(Problem::key(path, what).advise_if(advice));
             continue;
         };
         if !option.choices.contains_key(choice) {
             let all: Vec<_> = option.choices.keys().map(String::as_str).collect();
-            let what = format!("no choice `{choice}`; there are {}", all.join(", "));
+            let what = format!("unknown choice `{choice}`; choices: {}", all.join(", "));
             let advice = suggest::did_you_mean(choice, all);
             problems.push(Problem::value(path, what).advise_if(advice));
             continue;

@@ -34,7 +34,7 @@ impl Compiled {
             let (_, row) = self.map.rows().find(|(_, row)| row.id == near)?;
             Some(format!("did you mean {} ({})?", row.id, row.name))
         });
-        let what = format!("no register `{id}`");
+        let what = format!("unknown register `{id}`");
         problems.push(Problem::value(path.clone(), what).advise_if(advice));
         None
     }
@@ -73,7 +73,9 @@ fn without_overlaps(
                 (row.at..=last.unwrap_or(row.at)).find_map(|at| Some((at, owner.get(&at)?)));
             let clash = match (last, taken) {
                 (None, _) => Some(format!("the pair at 0x{:04X} has no second address", row.at)),
-                (_, Some((at, owner))) => Some(format!("address 0x{at:04X} is taken by {owner}")),
+                (_, Some((at, owner))) => {
+                    Some(format!("address 0x{at:04X} is already used by {owner}"))
+                }
                 _ => None,
             };
             if let Some(what) = clash {
@@ -82,7 +84,7 @@ fn without_overlaps(
                 return false;
             }
             if let Some(at) = names.insert(id.clone(), row.at) {
-                let what = format!("the name `{id}` is taken by the row at 0x{at:04X}");
+                let what = format!("duplicate name `{id}`, already used by the row at 0x{at:04X}");
                 problems.push(Problem::key(path.clone(), what));
                 return false;
             }
@@ -106,12 +108,12 @@ fn row(ExpandedRow { id, path, row: raw }: &ExpandedRow, problems: &mut Vec<Prob
         problems.push(Problem::value(path.key("init"), what));
     } else if !in_range {
         let kind = if listed { "values" } else { "range" };
-        let what = format!("init {} lies outside the {kind} {}", raw.init, span_text(&spans));
+        let what = format!("init {} is outside the {kind} {}", raw.init, span_text(&spans));
         let advice = match raw.init {
-            0 if listed => "give an init that is listed; without one it is 0",
+            0 if listed => "give an init that is listed; the default is 0",
             _ if listed => "give an init that is listed, or a `range`",
-            0 => "give an init inside it; without one it is 0",
-            _ => "give an init inside it, or widen the range",
+            0 => "give an init within the range; the default is 0",
+            _ => "give an init within the range, or widen it",
         };
         problems.push(Problem::value(path.key("init"), what).advise(advice));
     }
@@ -121,12 +123,12 @@ fn row(ExpandedRow { id, path, row: raw }: &ExpandedRow, problems: &mut Vec<Prob
         let symbols: Vec<_> = Unit::symbols().collect();
         let symbol = text.rsplit(' ').next().unwrap_or(text);
         let advice = match Unit::parse(symbol) {
-            Some(_) => "a factor is a number above 0 and a space: `0.1 rpm`".into(),
+            Some(_) => "a factor must be a number above 0 followed by a space: `0.1 rpm`".into(),
             None => suggest::did_you_mean(symbol, Unit::symbols()).unwrap_or_else(|| {
-                format!("known: {}; a factor may stand before it", symbols.join(", "))
+                format!("known: {}; each may have a factor in front", symbols.join(", "))
             }),
         };
-        let what = format!("no unit `{text}`");
+        let what = format!("unknown unit `{text}`");
         problems.push(Problem::value(path.key("unit"), what).advise(advice));
     }
     reject_keys_without_effect(raw, kind, path, problems);
@@ -184,8 +186,8 @@ fn reject_keys_without_effect(
     problems: &mut Vec<Problem>,
 ) {
     let mut reject = |key: &str, why: &str| {
-        let what = format!("`{key}` changes nothing on {why}");
-        problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+        let what = format!("`{key}` has no effect on {why}");
+        problems.push(Problem::key(path.key(key), what).advise("remove it"));
     };
     if raw.access == RawAccess::R {
         let of_writes = [
@@ -196,17 +198,17 @@ fn reject_keys_without_effect(
             ("not_simulated", !raw.not_simulated.is_empty()),
         ];
         for (key, _) in of_writes.into_iter().filter(|(_, set)| *set) {
-            reject(key, "a row that is read only");
+            reject(key, "a read-only row");
         }
     }
     if raw.access != RawAccess::R && raw.clears && raw.volatile {
-        reject("volatile", "a row that clears itself");
+        reject("volatile", "a row that `clears`");
     }
     if (raw.volatile || raw.clears) && raw.autosave {
-        reject("autosave", "a row that is never kept");
+        reject("autosave", "a volatile row");
     }
     if raw.word_order.is_some() && kind.words() == 1 {
-        reject("word_order", "a row of one word");
+        reject("word_order", "a 16-bit row");
     }
 }
 
@@ -223,12 +225,12 @@ fn reject_values_never_held(
         let what = if !(low..=high).contains(value) {
             format!("{value} does not fit the type, {low}..{high}")
         } else if !spans.iter().any(|(low, high)| (low..=high).contains(&value)) {
-            format!("{value} lies outside the range {}", span_text(spans))
+            format!("{value} is outside the range {}", span_text(spans))
         } else {
             continue;
         };
         let problem = Problem::key(path.key("values").key(value), what);
-        problems.push(problem.advise("widen the range, or leave the value out"));
+        problems.push(problem.advise("widen the range, or remove the value"));
     }
 }
 
@@ -262,8 +264,8 @@ fn spans(
     let mut spans = Vec::new();
     for (path, [low, high]) in pairs {
         if low > high {
-            let what = format!("no value lies between {low} and {high}");
-            problems.push(Problem::value(path, what).advise("the lower one comes first"));
+            let what = format!("the range {low} to {high} is empty");
+            problems.push(Problem::value(path, what).advise("give the lower value first"));
             continue;
         }
         if low < limits.0 || high > limits.1 {
@@ -281,7 +283,7 @@ fn whole_pairs(rows: &[Row], windows: &[Window], problems: &mut Vec<Problem>) {
         let shows = |at| (window.span.0..=window.span.1).contains(&at);
         if let Some(row) = rows.iter().find(|row| shows(row.at) != shows(row.last())) {
             let path = Path::root().key("windows").key(&window.name).key("span");
-            let what = format!("the span cuts the pair {} in two", row.id);
+            let what = format!("the span splits the pair {}", row.id);
             problems.push(Problem::value(path, what).advise("move its end by one"));
         }
     }
@@ -296,8 +298,8 @@ fn autosaves(entries: &[ExpandedRow], windows: &[Window], problems: &mut Vec<Pro
         };
         if windows.iter().all(saves) && !told.contains(&path) {
             told.push(path);
-            let what = "`autosave` changes nothing where every write is saved";
-            problems.push(Problem::key(path.key("autosave"), what).advise("leave it out"));
+            let what = "`autosave` has no effect where every write is stored";
+            problems.push(Problem::key(path.key("autosave"), what).advise("remove it"));
         }
     }
 }
@@ -315,8 +317,8 @@ fn compile_windows(
         let path = Path::root().key("windows").key(name);
         let [first, last] = raw.span.unwrap_or([0, 0xFFFF - raw.base]);
         if first > last || last > 0xFFFF - raw.base {
-            let what = format!("from base 0x{:04X} the span reaches beyond 0xFFFF", raw.base);
-            let what = if first > last { "the span holds no address".into() } else { what };
+            let what = format!("with base 0x{:04X} the span extends beyond 0xFFFF", raw.base);
+            let what = if first > last { "the span is empty".into() } else { what };
             problems.push(Problem::value(path.key("span"), what));
             continue;
         }
@@ -326,7 +328,7 @@ fn compile_windows(
                 Layer::RamAndStore
             }
             _ => {
-                let what = "a write goes to [ram] or to [ram, store]";
+                let what = "`writes` must be [ram] or [ram, store]";
                 problems.push(Problem::value(path.key("writes"), what));
                 continue;
             }
@@ -338,7 +340,7 @@ fn compile_windows(
             mine.start() <= theirs.end() && theirs.start() <= mine.end()
         });
         if let Some(other) = clash {
-            let what = format!("shows the same addresses as window `{}`", other.name);
+            let what = format!("overlaps window `{}`", other.name);
             let advice = "narrow the span of one of them";
             problems.push(Problem::key(path, what).advise(advice));
             continue;

@@ -7,8 +7,8 @@ use crate::time::{Duration, parse_duration};
 pub fn duration(text: &str, path: &Path, problems: &mut Vec<Problem>) -> Option<Duration> {
     let duration = parse_duration(text);
     if duration.is_none() {
-        let what = format!("`{text}` is no time");
-        let advice = "write a number and us, ms, s or min: 500ms";
+        let what = format!("`{text}` is not a duration");
+        let advice = "write a number with us, ms, s or min: 500ms";
         problems.push(Problem::value(path.clone(), what).advise(advice));
     }
     duration

@@ -35,16 +35,16 @@ pub const CHOICES: usize = 100;
 
 /// More of `what` than may be, if `count` is more than `most`.
 pub fn count(what: &str, count: usize, most: usize, path: &Path) -> Option<Problem> {
-    let told = || format!("at most {most} {what} may stand here, not {count}");
+    let told = || format!("at most {most} {what} are allowed here, not {count}");
     (count > most).then(|| Problem::value(path.clone(), told()))
 }
 
 /// Copies of rows that have too much text together.
 pub fn expanded() -> String {
-    length("the text of all copies", EXPANDED, "bytes")
+    length("the total text of all copies", EXPANDED, "bytes")
 }
 
 /// A text, a key or a file that is too long.
 pub fn length(what: &str, most: usize, unit: &str) -> String {
-    format!("{what} must not have more than {most} {unit}")
+    format!("{what} may have at most {most} {unit}")
 }

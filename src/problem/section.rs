@@ -15,7 +15,7 @@ pub fn tree(text: &str) -> Result<(Value, Vec<Problem>), Vec<Problem>> {
     let (places, problems) = Places::parse(text);
     let readable = places.find(&Path::root(), At::Value).is_some();
     if !readable && problems.is_empty() {
-        return Err(vec![Problem::value(Path::root(), "there is nothing in this file")]);
+        return Err(vec![Problem::value(Path::root(), "the file is empty")]);
     }
     if !readable || problems.iter().any(|problem| problem.path.is_root()) {
         return Err(problems);
@@ -52,7 +52,7 @@ pub fn read<T: DeserializeOwned>(
             }
             _ => None,
         };
-        problems.push(Problem::key(path.join(&tail), "no such key").advise_if(advice));
+        problems.push(Problem::key(path.join(&tail), "unknown key").advise_if(advice));
     }
     match result {
         Ok(read) => Some(read),
@@ -72,7 +72,7 @@ pub fn entries<'a>(
 ) -> Vec<(String, Path, &'a Value)> {
     let Some(value) = value else { return Vec::new() };
     let Value::Mapping(map) = value else {
-        problems.push(Problem::value(path.clone(), "a map of names should stand here"));
+        problems.push(Problem::value(path.clone(), "expected a map of names"));
         return Vec::new();
     };
     let entry = |(key, value): (&'a Value, &'a Value)| {

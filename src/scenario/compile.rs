@@ -72,13 +72,13 @@ impl ScenarioReader<'_> {
         let items = match steps {
             Some(Value::Sequence(items)) => items,
             Some(_) => {
-                self.refuse(&path, "a list of steps should stand here", None);
+                self.refuse(&path, "expected a list of steps", None);
                 Vec::new()
             }
             None => Vec::new(),
         };
         if items.is_empty() && self.problems.is_empty() {
-            self.problems.push(Problem::key(path.clone(), "a scenario needs a step"));
+            self.problems.push(Problem::key(path.clone(), "a scenario needs at least one step"));
         }
         let most = bounds::count("steps", items.len(), bounds::STEPS, &path);
         let items = if most.is_none() { items } else { Vec::new() };
@@ -102,7 +102,7 @@ impl ScenarioReader<'_> {
     fn limit(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
         let limit = self.time(text, path)?;
         if limit.is_zero() {
-            self.refuse(path, "with a limit of 0 the run ends before its first step", None);
+            self.refuse(path, "`limit` must be above 0", None);
         }
         Some(limit)
     }
@@ -116,8 +116,7 @@ impl ScenarioReader<'_> {
         let at = names.iter().position(|it| it == name);
         if at.is_none() {
             let advice = suggest::did_you_mean(name, names.iter().copied());
-            let problem =
-                Problem::value(path.key("line"), format!("the bench has no line `{name}`"));
+            let problem = Problem::value(path.key("line"), format!("unknown line `{name}`"));
             self.problems.push(problem.advise_if(advice));
         }
         at
@@ -141,13 +140,13 @@ impl ScenarioReader<'_> {
         if raw.orders.is_empty() && raw.expect.is_empty() && raw.repeat.is_none() {
             self.refuse(
                 path,
-                "this step does nothing and expects nothing",
-                Some("give `do` or `expect`"),
+                "this step has neither `do` nor `expect`",
+                Some("add `do` or `expect`"),
             );
         }
         if raw.within.is_some() && raw.expect.is_empty() {
             let problem =
-                Problem::key(path.key("within"), "`within` changes nothing without `expect`");
+                Problem::key(path.key("within"), "`within` has no effect without `expect`");
             self.problems.push(problem);
         }
         let trigger = self.trigger(raw, line, drive, path);
@@ -179,8 +178,8 @@ impl ScenarioReader<'_> {
         let mut given = given.iter().filter(|(_, given)| *given).map(|(key, _)| *key);
         given.next();
         if let Some(second) = given.next() {
-            let what = "a step waits for one thing, and this is another";
-            self.problems.push(Problem::key(path.key(second), what).advise("make it two steps"));
+            let what = "a step has only one trigger, and this is a second";
+            self.problems.push(Problem::key(path.key(second), what).advise("use two steps"));
         }
         if raw.at.is_some() {
             let at = self.time(raw.at.as_ref(), &path.key("at"))?;
@@ -199,7 +198,7 @@ impl ScenarioReader<'_> {
 
     fn after(&mut self, raw: &RawCount, line: Option<usize>, path: &Path) -> Option<Trigger> {
         if raw.n == 0 {
-            self.refuse(&path.key("n"), "to wait for no transaction is not to wait", None);
+            self.refuse(&path.key("n"), "`n` must be at least 1", None);
         }
         let path = path.key("unit");
         let drive = raw.unit.map(|unit| self.drive(line, Some(unit), DriveId(0), &path));
@@ -219,15 +218,15 @@ impl ScenarioReader<'_> {
             self.refuse(&own.key("every"), what, None);
         }
         if repeat.times < 2 {
-            self.refuse(&own.key("times"), "to repeat is to do it twice or more often", None);
+            self.refuse(&own.key("times"), "`times` must be at least 2", None);
         }
         let orders: Vec<_> = raw.orders.iter().map(|it| it.trim_start()).collect();
         if orders.is_empty() {
-            let problem = Problem::key(own, "`repeat` changes nothing without `do`");
+            let problem = Problem::key(own, "`repeat` has no effect without `do`");
             self.problems.push(problem);
         } else if orders.iter().any(|it| it.starts_with("fault ") || it.starts_with("no_fault ")) {
-            let problem = Problem::key(own, "a rule comes and goes once");
-            self.problems.push(problem.advise("rules have keys for their turns: `every`, `count`"));
+            let problem = Problem::key(own, "fault rules cannot be repeated");
+            self.problems.push(problem.advise("use the keys `every` and `count` of the rule"));
         }
         Some((repeat.times, every))
     }
@@ -284,7 +283,7 @@ impl ScenarioReader<'_> {
             Test::Within(_, Some(below)) if below <= low => ("below", below),
             Test::Is(_) | Test::Within(..) => return,
         };
-        let what = format!("never holds: {label} shows {low}..{high}, and this is {number}");
+        let what = format!("can never be true: {label} is within {low}..{high}, not {number}");
         self.refuse(&path.key(key), what, None);
     }
 
@@ -322,7 +321,7 @@ impl ScenarioReader<'_> {
                 self.known(row, "register", &name, ids.iter().map(String::as_str), path)
             }
             _ => {
-                let what = "a condition looks at one of signal, quantity, register";
+                let what = "a condition needs exactly one of signal, quantity, register";
                 self.refuse(path, what, None);
                 None
             }
@@ -340,7 +339,7 @@ impl ScenarioReader<'_> {
     ) -> Option<T> {
         if found.is_none() {
             let advice = suggest::did_you_mean(name, names);
-            let problem = Problem::value(path.key(key), format!("no {key} `{name}`"));
+            let problem = Problem::value(path.key(key), format!("unknown {key} `{name}`"));
             self.problems.push(problem.advise_if(advice));
         }
         found
@@ -360,8 +359,8 @@ impl ScenarioReader<'_> {
         };
         if test.is_none() {
             let what = match raw.signal.is_some() {
-                true => "a signal `is` on or off",
-                false => "a number `is` another, or lies `above` one, `below` one or between both",
+                true => "for a signal, give `is: on` or `is: off`",
+                false => "for a number, give `is`, `above`, `below`, or both of the last two",
             };
             self.refuse(path, what, None);
         }
@@ -370,7 +369,7 @@ impl ScenarioReader<'_> {
         {
             self.refuse(
                 &path.key("below"),
-                format!("no number lies between {above} and {below}"),
+                format!("there is no integer between {above} and {below}"),
                 None,
             );
         }
@@ -390,7 +389,7 @@ impl ScenarioReader<'_> {
         match line.find(unit) {
             Some(drive) => drive,
             None => {
-                self.refuse(path, format!("nobody answers to unit {unit} on this line"), None);
+                self.refuse(path, format!("no drive on this line has unit {unit}"), None);
                 default
             }
         }
@@ -400,8 +399,8 @@ impl ScenarioReader<'_> {
         let text = text?;
         let time = parse_duration(text);
         if time.is_none() {
-            let what = format!("`{text}` is not a time");
-            self.refuse(path, what, Some("write a number and us, ms, s or min: 200ms"));
+            let what = format!("`{text}` is not a duration");
+            self.refuse(path, what, Some("write a number with us, ms, s or min: 200ms"));
         }
         time
     }
@@ -410,7 +409,7 @@ impl ScenarioReader<'_> {
     fn time_above_zero(&mut self, text: Option<&String>, path: &Path) -> Option<Duration> {
         let time = self.time(text, path)?;
         if time.is_zero() {
-            self.refuse(path, "a time of 0 changes nothing", Some("leave it out"));
+            self.refuse(path, "a time of 0 has no effect", Some("remove it"));
         }
         Some(time)
     }

@@ -82,7 +82,7 @@ impl<'a> ScenarioLine<'a> {
         self.rules = left;
         if gone.is_empty() {
             let advice = suggest::did_you_mean(name, self.rules.iter().map(String::as_str));
-            let what = format!("no fault rule `{name}` stands on this line by then");
+            let what = format!("no fault rule `{name}` on this line at that point");
             return Err(NoOrder { what, advice });
         }
         Ok(gone.into_iter().map(Command::RemoveFault).collect())

@@ -75,7 +75,7 @@ impl DriveOrder {
                 })?;
                 let between = parse_duration(every).filter(|it| BETWEEN_EDGES.contains(it));
                 let between = between.ok_or_else(|| NoOrder {
-                    what: format!("the time from edge to edge is 1us to 1min, not `{every}`"),
+                    what: format!("the time between edges must be 1us to 1min, not `{every}`"),
                     advice: Some("write `bounce NAME 3 5ms`".into()),
                 })?;
                 Self::Bounce((*name).into(), count, between)
@@ -140,25 +140,25 @@ fn no_form(verb: &str) -> NoOrder {
     let forms: Vec<_> = FORMS.into_iter().filter(|form| verb_of(form) == verb).collect();
     if let [first, ..] = forms.as_slice() {
         let form = if forms.len() > 1 { forms.join("` or `") } else { (*first).to_owned() };
-        return NoOrder { what: format!("write `{form}`"), advice: None };
+        return NoOrder { what: format!("expected `{form}`"), advice: None };
     }
     let advice = suggest::did_you_mean(verb, FORMS.into_iter().map(verb_of));
-    let known = advice.unwrap_or_else(|| format!("write one of {}", FORMS.join(", ")));
-    NoOrder { what: format!("nobody knows how to `{verb}`"), advice: Some(known) }
+    let known = advice.unwrap_or_else(|| format!("known: {}", FORMS.join(", ")));
+    NoOrder { what: format!("unknown order `{verb}`"), advice: Some(known) }
 }
 
 fn is_on(level: &str) -> Result<bool, NoOrder> {
     match level {
         "on" => Ok(true),
         "off" => Ok(false),
-        _ => Err(no(format!("`on` or `off` should stand here, not `{level}`"))),
+        _ => Err(no(format!("expected `on` or `off`, found `{level}`"))),
     }
 }
 
 fn cause_of(name: &str) -> Result<AlarmCause, NoOrder> {
     AlarmCause::parse(name).ok_or_else(|| {
         let advice = suggest::did_you_mean(name, AlarmCause::ALL.iter().map(|it| it.name()));
-        NoOrder { what: format!("no alarm cause `{name}`"), advice }
+        NoOrder { what: format!("unknown alarm cause `{name}`"), advice }
     })
 }
 
@@ -169,6 +169,6 @@ fn terminal(model: &Model, name: &str) -> Result<u8, NoOrder> {
     let index = names.iter().position(|it| it == name);
     index.map(|index| index as u8).ok_or_else(|| {
         let advice = suggest::did_you_mean(name, names.iter().map(String::as_str));
-        NoOrder { what: format!("no input terminal `{name}`"), advice }
+        NoOrder { what: format!("unknown input terminal `{name}`"), advice }
     })
 }

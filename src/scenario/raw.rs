@@ -96,7 +96,7 @@ pub struct RawCondition {
 /// A register.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a register is a name or an address")]
+#[serde(untagged, expecting = "expected the name or the address of a register")]
 pub enum RawRegister {
     /// By address.
     Address(u16),

@@ -204,7 +204,7 @@ pub fn places(path: &Path) -> io::Result<Vec<PathBuf>> {
             Err(_) => return Ok(places),
         }
     }
-    Err(io::Error::other("a circle of links"))
+    Err(io::Error::other("too many levels of symbolic links"))
 }
 
 /// The folder that `path` lies in.

@@ -61,7 +61,7 @@ fn wait_for_bytes(file: &File) -> io::Result<()> {
     let patience = Timespec { tv_sec: PATIENCE.as_secs() as i64, tv_nsec: 0 };
     match poll(&mut [PollFd::new(file, PollFlags::IN)], Some(&patience)) {
         Ok(0) => {
-            let text = format!("nobody has written to it for {} s", PATIENCE.as_secs());
+            let text = format!("nothing was written to it for {} s", PATIENCE.as_secs());
             Err(io::Error::new(ErrorKind::TimedOut, text))
         }
         Ok(_) | Err(Errno::INTR) => Ok(()),
@@ -95,7 +95,7 @@ mod tests {
     fn what_has_no_end_is_refused() {
         let endless = read_text(Path::new("/dev/zero")).unwrap_err();
         assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
-        assert_eq!(endless.to_string(), "a file must not have more than 16777216 bytes");
+        assert_eq!(endless.to_string(), "a file may have at most 16777216 bytes");
         assert_eq!(read_text(Path::new("/")).unwrap_err().kind(), ErrorKind::IsADirectory);
         assert_eq!(read_text(Path::new("/dev/null")).unwrap(), "");
     }

@@ -37,7 +37,7 @@ impl Library for FileLibrary {
         let path = self.base.join(name);
         self.read.borrow_mut().push(path.clone());
         let text = read_text(&path)
-            .map_err(|error| format!("can't read {}: {}", path.display(), plain(&error)))?;
+            .map_err(|error| format!("cannot read {}: {}", path.display(), plain(&error)))?;
         Ok((path.display().to_string(), text))
     }
 }

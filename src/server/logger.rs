@@ -121,7 +121,7 @@ impl LogOutput {
     fn put(&mut self, mut line: String) {
         let lost = self.sink.lost();
         if lost > 0 {
-            let text = format!("{lost} lines of the log were lost: its reader is too slow");
+            let text = format!("{lost} lines of the log were lost: the reader is too slow");
             let text = match self.format {
                 LogFormat::Text => text,
                 LogFormat::Json => {
@@ -134,7 +134,7 @@ impl LogOutput {
         line.push('\n');
         self.sink.put(line);
         if let Some(why) = self.sink.has_failed() {
-            error!("can't write the log to {}: {}; it ends there", self.name, plain(why));
+            error!("cannot write the log to {}: {}; the log ends there", self.name, plain(why));
         }
     }
 }

@@ -101,7 +101,7 @@ impl PathClaims {
         let new = PathClaim { name, access, places, file };
         if let Some(other) = self.0.iter().find(|other| other.excludes(&new)) {
             return Err(format!(
-                "{} and {} are one file; nothing was touched",
+                "{} and {} are the same file; nothing was changed",
                 new.name, other.name
             ));
         }

@@ -34,7 +34,7 @@ impl PathLock {
         let name = SocketAddr::from_abstract_name(format!("drivemu/{dev:x}/{ino:x}/{name:x}"))?;
         match UnixListener::bind_addr(&name) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
-                Err(io::Error::new(io::ErrorKind::ResourceBusy, "a running drivemu has it"))
+                Err(io::Error::new(io::ErrorKind::ResourceBusy, "used by a running drivemu"))
             }
             // Where no mark can be made at all, nobody else has made one.
             socket => Ok(Self { _socket: socket.ok() }),

@@ -66,13 +66,13 @@ pub enum RunError {
     #[error("{0}")]
     Port(String),
     /// A file of the run can't be written, or not all of it.
-    #[error("can't write {}: {error}", .0.display(), error = plain(.1))]
+    #[error("cannot write {}: {error}", .0.display(), error = plain(.1))]
     File(PathBuf, io::Error),
     /// A line has ended by itself, which none does unless this program is wrong.
-    #[error("a line has ended by itself: {}", .0.as_deref().unwrap_or("no reason"))]
+    #[error("a line ended unexpectedly: {}", .0.as_deref().unwrap_or("no reason"))]
     LineEnded(Option<String>),
     /// The system lets nobody listen for signals.
-    #[error("can't listen for signals: {0}")]
+    #[error("cannot listen for signals: {0}")]
     Signals(io::Error),
 }
 

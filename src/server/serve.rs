@@ -143,7 +143,10 @@ impl LineServer {
             self.pass(at);
             if Clock::is_over(slice) {
                 if !LAGS.swap(true, Ordering::Relaxed) {
-                    warn!("{}: can't keep up with its clock; emulated time lags behind", self.name);
+                    warn!(
+                        "{}: cannot keep up with its clock; emulated time lags behind",
+                        self.name
+                    );
                 }
                 return self.bus.now().min(now);
             }

@@ -97,7 +97,7 @@ impl Sink {
         match self.ended.recv_timeout(LAST_TEXTS) {
             Ok(result) => result,
             Err(RecvTimeoutError::Timeout) => {
-                Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it"))
+                Err(io::Error::new(io::ErrorKind::TimedOut, "not being read"))
             }
             Err(RecvTimeoutError::Disconnected) => Err(io::Error::other("its writer has failed")),
         }

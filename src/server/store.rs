@@ -42,7 +42,7 @@ impl Store {
         let held = match fs::metadata(&target) {
             Ok(it) if it.is_file() => Some(File::open(&target)?),
             Ok(it) if it.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Ok(_) => return Err(io::Error::other("this is no file")),
+            Ok(_) => return Err(io::Error::other("not a regular file")),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
@@ -75,9 +75,12 @@ impl Store {
         let saved = self.save();
         let path = self.path.display();
         match saved {
-            Ok(()) if was_behind => info!("{path} is written again, with all that it lacked"),
+            Ok(()) if was_behind => info!("{path} is written again and complete"),
             Err(why) if !was_behind => {
-                error!("can't write {path}: {}; what drives store is not in it", plain(&why));
+                error!(
+                    "cannot write {path}: {}; it lacks what the drives have stored since",
+                    plain(&why)
+                );
             }
             Ok(()) | Err(_) => {}
         }
@@ -112,7 +115,7 @@ impl Store {
     /// somebody had removed it found nothing that was locked. Whoever puts a file in place has to lock `beside` first.
     fn still_ours(&self, new: &File, beside: &Path) -> io::Result<()> {
         if FileId::of(beside) != Some(FileId::from(&new.metadata()?)) {
-            return Err(io::Error::other("another run has put its own in place"));
+            return Err(io::Error::other("replaced by another run"));
         }
         let Ok(there) = File::open(&self.target) else { return Ok(()) };
         let id = |file: &File| file.metadata().map(|it| FileId::from(&it));
@@ -135,7 +138,7 @@ impl Store {
 /// Locks `file` until it is closed, be it by `kill -9`.
 fn lock(file: &File) -> io::Result<()> {
     match flock(file, FlockOperation::NonBlockingLockExclusive) {
-        Err(rustix::io::Errno::WOULDBLOCK) => Err(io::Error::other("another run uses it")),
+        Err(rustix::io::Errno::WOULDBLOCK) => Err(io::Error::other("in use by another run")),
         // Some network file systems know no locks.
         _ => Ok(()),
     }

@@ -229,7 +229,7 @@ impl Rig {
 
     /// Whatever has happened to a rig in use would be lost when it is switched on anew.
     fn must_be_new(&self, what: &str) {
-        assert!(!self.used, "`{what}` comes before the first use of a rig");
+        assert!(!self.used, "`{what}` must be called before the first use of a rig");
     }
 
     /// The line's name, its bus and the link that the test's master has, as they are by now; the steps to come; what

@@ -7,7 +7,7 @@
 pub fn hex(text: &str) -> Result<Vec<u8>, String> {
     let digits: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     if !digits.is_ascii() || !digits.len().is_multiple_of(2) {
-        return Err(format!("`{text}` is not whole bytes in hex"));
+        return Err(format!("`{text}` does not consist of whole bytes in hex"));
     }
     let byte = |i| u8::from_str_radix(&digits[i..i + 2], 16);
     let bytes = (0..digits.len()).step_by(2).map(byte).collect::<Result<_, _>>();

@@ -106,7 +106,7 @@ fn rules_come_and_go() {
     assert_eq!(ask(&mut rig, READ), frame(ANSWER));
     let gone = CommandError::NoFault("lose_reply".into());
     assert_eq!(remove(&mut rig), Err(gone.clone()));
-    assert_eq!(gone.to_string(), "there is no fault rule `lose_reply` on this line");
+    assert_eq!(gone.to_string(), "no fault rule `lose_reply` on this line");
     assert!(rig.log().contains("fault lose_reply: the reply of unit 1 was lost (hit 1)"));
 }
 
@@ -116,11 +116,11 @@ fn commands_are_refused() {
     let rule = || line.fault("bad_crc:name=x", &[]).expect("a good rule").rules.remove(0);
     let mut rig = drive(&["busy:name=x"]);
     let taken = rig.command(Command::AddFault(rule())).expect_err("the name is taken");
-    assert_eq!(taken.to_string(), "there is a fault rule `x` on this line already");
+    assert_eq!(taken.to_string(), "duplicate fault rule `x` on this line");
     // A bus that was never told how its line talks is Modbus TCP.
     let mut bus = drivemu::bus::Bus::new();
     let idle = bus.command(bus.now(), Command::AddFault(rule())).expect_err("no CRC");
-    assert_eq!(idle.to_string(), "`x` can do nothing here: a frame of Modbus TCP has no checksum");
+    assert_eq!(idle.to_string(), "`x` has no effect here: Modbus TCP frames have no checksum");
 }
 
 #[test]

@@ -83,5 +83,5 @@ fn habits_are_told() {
     let told = |line_behaviour: &str| Bench::servo(line_behaviour).bus.line_behaviour().to_string();
     assert_eq!(told("pacing: line"), "paced replies");
     let all = "pacing: line, chunk: 16ms, echo: true, chatter: {units: [7, 8]}";
-    assert_eq!(told(all), "paced replies, lumps of 16ms, echo, chatter of units 7, 8");
+    assert_eq!(told(all), "paced replies, chunks of 16ms, echo, chatter of units 7, 8");
 }

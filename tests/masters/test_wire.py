@@ -125,7 +125,7 @@ def test_the_link_of_a_living_run_is_not_taken(emulate, tmp_path):
     link = tmp_path / "drive.tty"
     emulate("hcfa-x", "--pty", link)
     target = os.readlink(link)
-    assert "a running drivemu has it" in refused(drivemu("run", "k-series", "--pty", link), NO_ENDPOINT)
+    assert "used by a running drivemu" in refused(drivemu("run", "k-series", "--pty", link), NO_ENDPOINT)
     assert os.readlink(link) == target
 
 

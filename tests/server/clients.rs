@@ -32,11 +32,11 @@ fn silent_clients_lock_nobody_out() {
         drop((silent, late));
         program.wait_until_said(&said, "fewer than 64 clients again; ");
         drop(busy);
-        wait_for("the last to leave", || said.all().matches("a client has left").count() >= 2);
+        wait_for("the last to leave", || said.all().matches("client disconnected").count() >= 2);
         let said = said.all();
         assert_eq!(said.matches("which is the limit").count(), 1, "{said}");
         let displaced = 2 + 2 * MAX_CLIENTS - MAX_CLIENTS;
-        assert!(said.contains(&format!("again; {displaced} were displaced")), "{said}");
+        assert!(said.contains(&format!("again; {displaced} were disconnected")), "{said}");
         // None of those that were displaced has a line, and none of those that displaced them.
         assert!(said.matches(" connected\n").count() <= MAX_CLIENTS, "{said}");
         assert_eq!(program.stop("TERM").0, Some(0));

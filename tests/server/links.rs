@@ -23,7 +23,7 @@ fn the_link_of_a_living_run_is_not_taken() {
     ] {
         let (code, stdout, stderr) = once(folder.path(), args);
         assert_eq!((code, stdout.as_str()), (Some(3), ""), "{stderr}");
-        assert!(stderr.contains("drive.tty: a running drivemu has it"), "{stderr}");
+        assert!(stderr.contains("drive.tty: used by a running drivemu"), "{stderr}");
         assert_eq!(read_link(&link).expect("a link"), target);
     }
     assert_eq!(program.stop("TERM").0, Some(0));
@@ -50,7 +50,7 @@ fn a_link_to_something_that_is_there_is_not_taken() {
         symlink(there, &link).expect("linked");
         let (code, _, stderr) = once(folder.path(), &["run", "--pty", text(&link)]);
         assert_eq!(code, Some(3), "{stderr}");
-        assert!(stderr.contains("will not replace it"), "{stderr}");
+        assert!(stderr.contains("not replaced"), "{stderr}");
         assert_eq!(text(&read_link(&link).expect("a link")), there);
         std::fs::remove_file(&link).expect("removed");
     }
@@ -89,6 +89,6 @@ fn the_ready_file_of_a_living_run_is_not_taken() {
     let told = std::fs::read_to_string(&ready).expect("a file");
     let (code, _, stderr) = once(program.folder(), &["run", "--ready-file", "./ready.json"]);
     assert_eq!(code, Some(1), "{stderr}");
-    assert!(stderr.contains("ready.json: a running drivemu has it"), "{stderr}");
+    assert!(stderr.contains("ready.json: used by a running drivemu"), "{stderr}");
     assert_eq!(std::fs::read_to_string(&ready).expect("a file"), told);
 }

@@ -83,7 +83,7 @@ fn no_output_is_an_input() {
                 // A file that is no state file is found out before the files of the bench are known.
                 let says = match (output, input) {
                     ("--state", "small.yaml") => "",
-                    _ => " are one file; nothing was touched",
+                    _ => " are the same file; nothing was changed",
                 };
                 refused(&folder, &args, says);
             }
@@ -100,7 +100,7 @@ fn no_two_outputs_are_one() {
                 for spelling in spellings.iter().map(|it| it.replace("PATH", path)) {
                     let args = ["run", "hcfa-x", "--scenario", "day.yaml"];
                     let more = [first, path, second, &spelling];
-                    refused(&folder, &[&args[..], &more].concat(), " are one file");
+                    refused(&folder, &[&args[..], &more].concat(), " are the same file");
                 }
             }
         }
@@ -113,7 +113,7 @@ fn links_of_terminals_are_outputs_too() {
     for output in OUTPUTS {
         for spelling in ["a.tty", "./a.tty", "sub/../a.tty"] {
             let args = ["run", "hcfa-x", "--scenario", "day.yaml", "--pty", "a.tty", output];
-            refused(&folder, &[&args[..], &[spelling]].concat(), " are one file");
+            refused(&folder, &[&args[..], &[spelling]].concat(), " are the same file");
         }
     }
 }
@@ -135,7 +135,7 @@ fn stdout_is_an_output_too() {
         let output = command.output().expect("it starts");
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(said.contains(" and stdout are one file"), "{args:?}: {said}");
+        assert!(said.contains(" and stdout are the same file"), "{args:?}: {said}");
         assert_eq!(contents(folder.path()), before, "{args:?}");
     }
 }
@@ -200,7 +200,7 @@ fn the_report_is_there_whatever_ends_the_run() {
             .as_str(),
     );
     for (args, code, why) in [
-        (["--tcp", &addr], 3, "another program listens there"),
+        (["--tcp", &addr], 3, "address in use"),
         (["--pty", "no/such/link"], 3, "there is no directory"),
         (["--serial", "/dev/nowhere"], 3, "no such device"),
         (["--log-file", "sub"], 1, ""),

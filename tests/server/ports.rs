@@ -61,7 +61,7 @@ fn a_reader_that_stops_reading_stops_nobody() {
     for _ in 0..8_000 {
         port.write_all(&request).expect("written");
     }
-    program.wait_until_said(&said, "nobody reads the answers");
+    program.wait_until_said(&said, "replies are not being read");
     // The master wakes up, throws away what piled up, and is served again.
     drop(port);
     let mut port = open(&program.path());
@@ -81,7 +81,7 @@ fn a_serial_port_is_unplugged_and_comes_back() {
     let mut cable = first;
     assert_eq!(ask(&mut cable), hex(ANSWER).expect("hex"));
     drop(cable);
-    program.wait_until_said(&said, "the port is gone");
+    program.wait_until_said(&said, "the port disappeared");
     std::fs::remove_file(&device).expect("unplugged");
     let mut cable = plug_in(&device);
     program.wait_until_said(&said, "the port is back");

@@ -114,12 +114,12 @@ fn a_bad_scenario_is_refused() {
         (
             &["run", "yako-closed-loop", "--scenario", "bad.yaml"][..],
             2,
-            "bad.yaml:1:24: steps[0].do[0]: no input terminal `X9`",
+            "bad.yaml:1:24: steps[0].do[0]: unknown input terminal `X9`",
         ),
         (
             &["run", "yako-closed-loop", "--scenario", "none.yaml"],
             2,
-            "can't read none.yaml: no such file",
+            "cannot read none.yaml: no such file",
         ),
         (
             &["run", "good.yaml"],

@@ -102,6 +102,6 @@ fn the_switch_is_for_pseudo_terminals() {
     for port in ["--tcp=127.0.0.1:0", "--rtu-over-tcp=127.0.0.1:0", "--serial=/dev/ttyS0"] {
         let (code, _, stderr) = once(folder.path(), &["run", "hcfa-x", "--match-baud", port]);
         assert_eq!(code, Some(2), "{stderr}");
-        assert!(stderr.contains("only a pseudo-terminal"), "{stderr}");
+        assert!(stderr.contains("applies to a pseudo-terminal only"), "{stderr}");
     }
 }

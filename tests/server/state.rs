@@ -175,13 +175,13 @@ fn files_that_are_not_for_this_run_stay_as_they_are() {
             "format: 1\ndrives: {line/1: {model: other, rows: {}}}\n",
             "other.yaml:2:26: drives[line/1].model: line/1 is other in this file and hcfa-x in this run",
         ),
-        ("later.yaml", "format: 7\n", "a later version has written it"),
+        ("later.yaml", "format: 7\n", "a later version wrote this file"),
         ("broken.yaml", "format: 1\ndrives: {", "broken.yaml:2:"),
-        ("empty.yaml", "", "there is nothing in this file"),
+        ("empty.yaml", "", "the file is empty"),
         (
             "row.yaml",
             &format!("format: 1\n{}\n", empty.replace("{}", "{P03.04: {value: 70000}}")),
-            "P03.04 Jog speed takes",
+            "P03.04 Jog speed accepts",
         ),
     ] {
         let path = file(&folder, name, text);
@@ -190,18 +190,18 @@ fn files_that_are_not_for_this_run_stay_as_they_are() {
         assert!(stderr.contains(says), "{stderr}");
         assert!(
             stderr.ends_with(&format!(
-                "{name} is as it was: mend it, move it away, or give another --state\n"
+                "{name} was not changed: correct it, move it away, or give another --state\n"
             )),
             "{stderr}"
         );
         assert_eq!(fs::read_to_string(path).expect("still there"), text);
     }
     for (state, code, says) in [
-        (".", 2, "can't use .: "),
+        (".", 2, "cannot use .: "),
         (
             "no/such/folder/state.yaml",
             1,
-            "can't write no/such/folder/state.yaml: no such file or directory",
+            "cannot write no/such/folder/state.yaml: no such file or directory",
         ),
     ] {
         let run = once(folder.path(), &["run", "hcfa-x", "--state", state]);
@@ -211,7 +211,7 @@ fn files_that_are_not_for_this_run_stay_as_they_are() {
     fs::write(folder.path().join("binary"), [0xFF, 0xFE, 0x00]).expect("written");
     let (code, _, stderr) = once(folder.path(), &["run", "hcfa-x", "--state", "binary"]);
     assert_eq!(code, Some(2));
-    assert!(stderr.contains("can't use binary: this is not UTF-8 text"), "{stderr}");
+    assert!(stderr.contains("cannot use binary: this is not UTF-8 text"), "{stderr}");
 }
 
 #[test]
@@ -225,10 +225,10 @@ fn one_run_at_a_time() {
         assert_eq!(code, Some(2), "{stderr}");
         assert!(stderr.contains(says), "{stderr}");
     };
-    refused("another run uses it");
+    refused("in use by another run");
     // The file that it has written since is its own as well.
     ask(&first, &[6, 0xE8, 0x0B, 0, 1]);
-    refused("another run uses it");
+    refused("in use by another run");
     assert_eq!(first.stop("TERM").0, Some(0));
 }
 
@@ -253,12 +253,12 @@ fn a_file_that_was_removed_has_one_owner() {
     store(&second, 22);
     store(&first, 2);
     store(&first, 3);
-    first.wait_until_said(&said, "another run uses it");
+    first.wait_until_said(&said, "in use by another run");
     store(&second, 23);
     assert_eq!(kept(&state), (23, 2), "untouched by the first");
     assert_eq!(first.stop("TERM").0, Some(1), "what it has stored is nowhere");
     assert_eq!(
-        said.all().matches("can't write").count(),
+        said.all().matches("cannot write").count(),
         2,
         "once, and at the end: {}",
         said.all()
@@ -294,12 +294,12 @@ fn a_disk_that_fails_stops_no_drive() {
     for value in 1..=3 {
         assert_eq!(ask(&program, &[6, 0xE8, 0x0B, 0, value]), [6, 0xE8, 0x0B, 0, value]);
     }
-    program.wait_until_said(&said, "error: can't write");
+    program.wait_until_said(&said, "error: cannot write");
     fs::create_dir(&inner).expect("back");
     ask(&program, &[6, 0xE3, 0x04, 0, 9]);
     program.wait_until_said(&said, "is written again");
     assert_eq!(kept(&state), (3, 3));
-    assert_eq!(said.all().matches("can't write").count(), 1, "{}", said.all());
+    assert_eq!(said.all().matches("cannot write").count(), 1, "{}", said.all());
     fs::remove_dir_all(&inner).expect("gone again");
     ask(&program, &[6, 0xE8, 0x0B, 0, 4]);
     // Somebody who only looks at the end learns of it too.

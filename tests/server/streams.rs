@@ -147,15 +147,15 @@ fn a_full_disk_is_no_success() {
         let output = full.output().expect("it starts");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(1), "{args:?}: {said}");
-        assert_eq!(said, "can't write to stdout: no space left on the device\n", "{args:?}");
+        assert_eq!(said, "cannot write to stdout: no space left on the device\n", "{args:?}");
         let full = redirected(folder.path(), args, ">/dev/full 2>/dev/full");
         assert_eq!(code(full), 1, "{args:?}");
         assert_eq!(code(redirected(folder.path(), args, ">&-")), 0, "{args:?}");
     }
     for (flag, says) in [
         ("--log-file", "/dev/full: no space left on the device"),
-        ("--ready-file", "can't write /dev/full: no space left on the device"),
-        ("--junit", "can't write /dev/full: no space left on the device"),
+        ("--ready-file", "cannot write /dev/full: no space left on the device"),
+        ("--junit", "cannot write /dev/full: no space left on the device"),
     ] {
         let args = ["run", "hcfa-x", "--scenario", "passes.yaml", flag, "/dev/full"];
         let (code, log, stderr) = once(folder.path(), &args);
@@ -178,7 +178,7 @@ fn fifos_and_devices() {
         let args = ["run", "hcfa-x", "--scenario", "passes.yaml", flag, "fifo"];
         let (code, _, stderr) = once(folder.path(), &args);
         assert_eq!(code, Some(1), "{flag}: {stderr}");
-        assert!(stderr.contains("can't write fifo: nobody reads it"), "{flag}: {stderr}");
+        assert!(stderr.contains("cannot write fifo: not being read"), "{flag}: {stderr}");
         let path = fifo.clone();
         let reader = std::thread::spawn(move || fs::read_to_string(path).expect("text"));
         let (code, _, stderr) = once(folder.path(), &args);
@@ -195,7 +195,7 @@ fn fifos_and_devices() {
     assert!(!fs::metadata("/dev/null").expect("there").is_file());
     let (code, _, stderr) = once(folder.path(), &["run", "hcfa-x", "--state", "fifo"]);
     assert_eq!(code, Some(2));
-    assert!(stderr.contains("can't use fifo: this is no file"), "{stderr}");
+    assert!(stderr.contains("cannot use fifo: not a regular file"), "{stderr}");
 }
 
 #[test]

@@ -136,13 +136,13 @@ impl Saved {
         let RawSavedRow { value, writes } = *raw;
         let computed = model.wiring.shows(row).is_some_and(|it| !matches!(it, Shows::PastAlarm(_)));
         if of_map.volatile || computed {
-            let what = format!("{} is not kept over power-off", of_map.label());
-            self.problems.push(Problem::key(path.clone(), what).advise("leave it out"));
+            let what = format!("{} is not non-volatile", of_map.label());
+            self.problems.push(Problem::key(path.clone(), what).advise("remove it"));
             return None;
         }
         if !of_map.admits(value) {
             let (label, range) = (of_map.label(), of_map.range_text());
-            let what = format!("{label} takes {range}, not {value}");
+            let what = format!("{label} accepts {range}, not {value}");
             self.problems.push(Problem::value(path.key("value"), what));
             return None;
         }
@@ -154,11 +154,11 @@ impl Saved {
 fn of_the_future(file: &Value) -> Option<Problem> {
     let format = file.get("format")?.as_u64()?;
     (format > FORMAT.into())
-        .then(|| other_format(file).advise("a later version has written it: use that one"))
+        .then(|| other_format(file).advise("a later version wrote this file: use that version"))
 }
 
 fn other_format(file: &Value) -> Problem {
     let format = file.get("format").and_then(Value::as_u64).unwrap_or_default();
-    let what = format!("this program reads format {FORMAT}, not {format}");
+    let what = format!("unsupported format {format}; this version reads format {FORMAT}");
     Problem::value(Path::root().key("format"), what)
 }

@@ -31,7 +31,7 @@ impl StateFile {
     /// The whole file.
     pub fn text(&self) -> String {
         let mut text =
-            String::from("# What drives keep over power-off. Not to be edited during a run.\n");
+            String::from("# Non-volatile memory of the drives. Do not edit during a run.\n");
         text += &entry(0, "format", &FORMAT.to_string());
         text += &entry(0, "drives", "");
         self.sections.values().for_each(|section| text += section);

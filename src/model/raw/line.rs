@@ -125,7 +125,7 @@ pub enum RawLengthCheck {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(
     untagged,
-    expecting = "word_order is high_word_first, low_word_first or {register: ROW, codes: {0: high_word_first, ...}}"
+    expecting = "expected high_word_first, low_word_first or {register: ROW, codes: {0: high_word_first, ...}}"
 )]
 pub enum RawWordOrder {
     /// Always the same.

@@ -85,7 +85,7 @@ pub enum RawType {
 /// One span of values, or several.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a range is [low, high], or a list of such pairs")]
+#[serde(untagged, expecting = "expected [low, high], or a list of such pairs")]
 pub enum RawRange {
     /// `[low, high]`, both included.
     One([i64; 2]),

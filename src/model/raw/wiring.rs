@@ -215,7 +215,7 @@ pub struct RawGear {
 /// Counts for one revolution.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "a number of counts, or a row")]
+#[serde(untagged, expecting = "expected a number of counts, or a row")]
 pub enum RawCounts {
     /// This many.
     Number(u32),

@@ -27,8 +27,8 @@ impl Wirer<'_> {
         }
         let volts = Unit::parse(text).filter(|it| it.dimension == Dimension::Voltage);
         if volts.is_none() {
-            let problem = Problem::value(path.key(key), format!("`{text}` is no voltage"));
-            self.problems.push(problem.advise("write a number and its unit: `180 V`"));
+            let problem = Problem::value(path.key(key), format!("`{text}` is not a voltage"));
+            self.problems.push(problem.advise("write a number with its unit: `180 V`"));
         }
         volts.map(|it| it.scale)
     }
@@ -64,14 +64,14 @@ impl Wirer<'_> {
     fn history_fits(&mut self, raw: &RawModel, cleared: bool) {
         let clear = Action::ClearAlarmHistory.name();
         if cleared && raw.alarm_history.is_empty() {
-            let what = format!("`{clear}` is wired, but no row shows an alarm of the past");
+            let what = format!("`{clear}` is wired, but there is no alarm history");
             let problem = Problem::key(Path::root().key("signals"), what);
             self.problems.push(problem.advise("add `alarm_history: [ROW, ...]`"));
         }
         if !raw.alarm_history.is_empty() && raw.alarms.is_empty() {
-            let what = "`alarm_history` stays empty: there are no `alarms`";
+            let what = "`alarm_history` has no effect: there are no `alarms`";
             let problem = Problem::key(Path::root().key("alarm_history"), what);
-            self.problems.push(problem.advise("add them, or leave it out"));
+            self.problems.push(problem.advise("add them, or remove it"));
         }
     }
 
@@ -84,7 +84,7 @@ impl Wirer<'_> {
         let ramps = self.wiring.alarms.iter().any(|alarm| alarm.stop == AlarmStop::Ramp);
         if !ramps && self.wiring.axis.setting(Setting::AlarmDecel).is_some() {
             let decel = Setting::AlarmDecel.name();
-            let what = format!("`{decel}` changes nothing: no alarm stops with a ramp");
+            let what = format!("`{decel}` has no effect: no alarm stops with a ramp");
             let path = Path::root().key("quantities").key(decel);
             self.problems.push(Problem::key(path, what).advise("give one `stop: ramp`"));
         }

@@ -92,7 +92,7 @@ impl Wirer<'_> {
         }
         match (raw, starter) {
             (None, Some(starter)) => {
-                let what = format!("`{starter}` moves an axis, and there is no `axis`");
+                let what = format!("`{starter}` moves an axis, but there is no `axis`");
                 let problem = Problem::key(Path::root().key("signals"), what);
                 self.problems
                     .push(problem.advise("add `axis: {counts_per_rev: N}`, or a row for N"));
@@ -125,7 +125,7 @@ impl Wirer<'_> {
             self.wiring.axis.coast = coast;
         }
         if raw.position_gain.is_some_and(|gain| !(0.1..=10_000.0).contains(&gain)) {
-            let what = "a position gain lies between 0.1 and 10000 1/s";
+            let what = "`position_gain` must be between 0.1 and 10000 1/s";
             self.problems.push(Problem::value(path.key("position_gain"), what));
         }
         self.wiring.axis.position_gain = raw.position_gain;
@@ -145,13 +145,13 @@ impl Wirer<'_> {
         let name = Quantity::ElectricalAngle.name();
         match raw {
             Some(0) => {
-                let what = "a motor has at least one pair of poles";
+                let what = "`pole_pairs` must be at least 1";
                 self.problems.push(Problem::value(path.key("pole_pairs"), what));
             }
             Some(_) if !shown => self.unused("pole_pairs", &format!("no row shows `{name}`"), path),
             Some(pairs) => self.wiring.axis.pole_pairs = pairs,
             None if shown => {
-                let what = format!("`{name}` shows, but nothing says how many poles the motor has");
+                let what = format!("`{name}` is shown, but the number of pole pairs is missing");
                 let path = Path::root().key("quantities").key(name);
                 self.problems
                     .push(Problem::key(path, what).advise("add `pole_pairs: N` to `axis`"));
@@ -163,8 +163,8 @@ impl Wirer<'_> {
     fn speed_unit(&mut self, text: &str, path: &Path) -> Option<f64> {
         let unit = Unit::parse(text).filter(|it| it.dimension == Dimension::Speed);
         if unit.is_none() {
-            let problem = Problem::value(path.clone(), format!("`{text}` is no unit of speed"));
-            self.problems.push(problem.advise("write `rpm`, or a factor and `rpm`"));
+            let problem = Problem::value(path.clone(), format!("`{text}` is not a unit of speed"));
+            self.problems.push(problem.advise("write `rpm`, or a factor and `rpm`: `0.1 rpm`"));
         }
         unit.map(|it| it.scale)
     }
@@ -175,10 +175,12 @@ impl Wirer<'_> {
             let row = self.row(register, &path)?;
             let it = self.rows.map.row(row);
             if it.spans.iter().any(|(low, _)| *low <= 0) {
-                let what =
-                    format!("{} may hold 0 or less, and a gear has whole numbers from 1 on", it.id);
+                let what = format!(
+                    "{} can be 0 or less, but a gear ratio needs numbers of at least 1",
+                    it.id
+                );
                 let problem = Problem::value(path, what);
-                self.problems.push(problem.advise("give the row a `range` from 1 on"));
+                self.problems.push(problem.advise("give the row a `range` that begins at 1"));
             }
             Some(row)
         };
@@ -190,7 +192,7 @@ impl Wirer<'_> {
     fn per_rev(&mut self, raw: &RawCounts, path: &Path) -> Option<Counts> {
         let row = match raw {
             RawCounts::Number(0) => {
-                let what = "a revolution has at least one count";
+                let what = "a revolution has at least 1 count";
                 self.problems.push(Problem::value(path.clone(), what));
                 return None;
             }
@@ -199,7 +201,7 @@ impl Wirer<'_> {
         };
         let it = self.rows.map.row(row);
         if it.unit.dimension != Dimension::Resolution {
-            let what = format!("{} must hold counts of a revolution", it.id);
+            let what = format!("{} must be in counts per revolution", it.id);
             let problem = Problem::value(path.clone(), what);
             self.problems.push(problem.advise("give the row `unit: counts/rev`"));
         }
@@ -210,9 +212,9 @@ impl Wirer<'_> {
         let Counts::Row(row) = counts else { return };
         let it = self.rows.map.row(row);
         if it.spans.iter().any(|(low, _)| *low <= 0) {
-            let what = format!("{} may hold 0, and a revolution has at least one count", it.id);
+            let what = format!("{} can be 0, but a revolution has at least 1 count", it.id);
             let problem = Problem::value(path.clone(), what);
-            self.problems.push(problem.advise("give the row a `range` from 1 on"));
+            self.problems.push(problem.advise("give the row a `range` that begins at 1"));
         }
     }
 
@@ -227,14 +229,14 @@ impl Wirer<'_> {
         let problem = match (used, known) {
             (true, false) => Problem::key(
                 path.clone(),
-                "a row counts in `inc`, and nothing says how many make a revolution",
+                "a row is in `inc`, but the number of increments per revolution is missing",
             )
             .advise("add `encoder: N`, or a row for N"),
             (false, true) => Problem::key(
                 path.key("encoder"),
-                "`encoder` changes nothing: no row that is wired counts in `inc`",
+                "`encoder` has no effect: no row that is wired is in `inc`",
             )
-            .advise("leave it out"),
+            .advise("remove it"),
             _ => return,
         };
         self.problems.push(problem);
@@ -254,10 +256,10 @@ impl Wirer<'_> {
                         .push(Problem::key(Path::root().key("signals"), what).advise(advice));
                 }
                 None if wired => {
-                    let what = format!("`{name}` changes nothing: nothing starts a {}", kind.name);
+                    let what = format!("`{name}` has no effect: nothing starts a {}", kind.name);
                     self.problems.push(
                         Problem::key(path.key(name), what)
-                            .advise("wire what starts it, or leave it out"),
+                            .advise("wire what starts it, or remove it"),
                     );
                 }
                 _ => {}
@@ -332,8 +334,8 @@ impl Wirer<'_> {
     }
 
     pub(super) fn without_motion(&mut self, name: &str, path: &Path) {
-        let what = format!("`{name}` changes nothing: nothing starts a motion");
-        let advice = "wire what starts it, or leave it out";
+        let what = format!("`{name}` has no effect: nothing starts a motion");
+        let advice = "wire what starts it, or remove it";
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
     }
 }

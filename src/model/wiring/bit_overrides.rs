@@ -14,8 +14,8 @@ impl Wirer<'_> {
             for (bit, claim) in bits {
                 let path = path.key(bit);
                 if !raw.bits.get(register).is_some_and(|bits| bits.contains_key(bit)) {
-                    let what = format!("bit {bit} of {register} carries no signal to be taken");
-                    self.problems.push(Problem::key(path.clone(), what).advise("leave it out"));
+                    let what = format!("bit {bit} of {register} has no signal to override");
+                    self.problems.push(Problem::key(path.clone(), what).advise("remove it"));
                 }
                 let Some(by) = self.digit(claim, &path) else { continue };
                 self.react(by.row, Reaction::Inputs, &path.key("register"), At::Value);

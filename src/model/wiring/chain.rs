@@ -66,8 +66,10 @@ impl Wirer<'_> {
         for (i, condition) in raw.conditions.iter().enumerate() {
             let path = path.key("conditions").index(i).key("digit");
             let what = match condition.digit {
-                digit if digit > 3 => format!("a rule has hex digits 0 to 3, none {digit}"),
-                digit if digits.contains(&digit) => format!("digit {digit} is another condition's"),
+                digit if digit > 3 => format!("a rule has hex digits 0 to 3, not {digit}"),
+                digit if digits.contains(&digit) => {
+                    format!("digit {digit} is already used by another condition")
+                }
                 digit => {
                     digits.push(digit);
                     continue;
@@ -79,14 +81,14 @@ impl Wirer<'_> {
         for (code, name) in &raw.codes {
             let path = path.key("codes").key(code);
             if *code > 0xF {
-                let what = format!("a hex digit never is {code}");
+                let what = format!("a hex digit is never {code}");
                 self.problems.push(Problem::key(path.clone(), what));
             }
             codes.extend(self.word::<Condition>(name, "condition", &path).map(|it| (*code, it)));
         }
         for (name, bit) in [("all", raw.all), ("through", raw.through)] {
             if bit.is_some_and(|bit| bit > 15 || digits.contains(&(bit / 4))) {
-                let what = "a bit of the rule that no condition has, 0 to 15";
+                let what = "must be a bit from 0 to 15 that no condition uses";
                 self.problems.push(Problem::value(path.key(name), what));
             }
         }
@@ -110,7 +112,7 @@ impl Wirer<'_> {
             if coded != text.is_some() || text.is_some() && unit.is_none() {
                 let symbols: Vec<_> = Unit::symbols_of(dimension).collect();
                 let what = format!(
-                    "`{}` takes a unit if it has a code: {}",
+                    "`{}` needs a unit if and only if it has a code: {}",
                     condition.name(),
                     symbols.join(" or ")
                 );
@@ -120,7 +122,7 @@ impl Wirer<'_> {
         }
         let plain = |name: &&String| !measured.iter().any(|(it, _)| it.name() == name.as_str());
         for name in raw.units.keys().filter(plain) {
-            let what = format!("no condition `{name}` has a value");
+            let what = format!("condition `{name}` has no value");
             self.problems.push(Problem::key(path.key("units").key(name), what));
         }
         units

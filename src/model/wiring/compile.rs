@@ -90,7 +90,7 @@ impl Wirer<'_> {
         for (i, name) in raw.machine.iter().enumerate() {
             let path = path.key("machine").index(i);
             if raw.machine[..i].contains(name) {
-                self.problems.push(Problem::value(path, format!("`{name}` stands here twice")));
+                self.problems.push(Problem::value(path, format!("`{name}` is listed twice")));
                 continue;
             }
             let signal = self.switch(name, &path);
@@ -223,7 +223,7 @@ impl Wirer<'_> {
     ) -> Terminals<S> {
         let functions = self.row_list(&raw.functions, &path.key("functions"));
         if functions.len() > 16 {
-            let what = "a word has room for 16 terminals";
+            let what = "a word has 16 bits, one per terminal";
             self.problems.push(Problem::value(path.key("functions"), what));
         }
         let normally_closed = match &raw.normally_closed {
@@ -250,7 +250,7 @@ impl Wirer<'_> {
         let row = self.row(&raw.register, &path.key("register"))?;
         let unit = self.rows.map.row(row).unit;
         if unit.dimension != Dimension::Time {
-            let what = format!("{} must hold a time", raw.register);
+            let what = format!("{} must be a time", raw.register);
             let problem = Problem::value(path.key("register"), what);
             self.problems.push(problem.advise("give the row `unit: s` or `unit: ms`"));
         }
@@ -271,7 +271,7 @@ impl Wirer<'_> {
         for (name, alarm) in &raw.alarms {
             let path = Path::root().key("alarms").key(name);
             if alarm.code == 0 {
-                let what = "0 means no alarm";
+                let what = "code 0 means no alarm";
                 self.problems.push(Problem::value(path.key("code"), what));
             }
             let cause = self.word_key::<AlarmCause>(name, "alarm cause", &path);

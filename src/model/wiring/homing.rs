@@ -70,11 +70,11 @@ impl Wirer<'_> {
         let path = Path::root().key("homing");
         let row = raw.method.as_ref().and_then(|id| self.row(id, &path.key("method")));
         let stop = raw.stop.as_ref().and_then(|it| {
-            self.word::<OriginStop>(it, "way to stand at the origin", &path.key("stop"))
+            self.word::<OriginStop>(it, "stopping mode at the origin", &path.key("stop"))
         });
         let starter = raw.starter.as_ref().and_then(|it| {
             self.chosen(it, &path.key("starter"), |wirer, name: &String, path| {
-                wirer.word(name, "starter of a homing", path)
+                wirer.word(name, "homing trigger", path)
             })
         });
         let source = &raw.limit_source;
@@ -82,8 +82,8 @@ impl Wirer<'_> {
             method: row,
             methods: BTreeMap::new(),
             starter,
-            limit: self.words_chosen(&raw.limit, "meaning of a limit", &path.key("limit")),
-            source: self.words_chosen(source, "source of limits", &path.key("limit_source")),
+            limit: self.words_chosen(&raw.limit, "reaction to a limit", &path.key("limit")),
+            source: self.words_chosen(source, "limit detection", &path.key("limit_source")),
             index: self.words_chosen(&raw.index, "use of the index pulse", &path.key("index")),
             stop: stop.unwrap_or(OriginStop::AtOnce),
             finish: self.choice(&raw.finish, &path.key("finish"), Self::finish),
@@ -116,7 +116,7 @@ impl Wirer<'_> {
 
     fn methods(&mut self, raw: &RawHoming, path: &Path) -> BTreeMap<i64, Method> {
         if raw.method.is_none() && raw.methods.len() != 1 {
-            let what = "without a row that chooses there is one method";
+            let what = "without a row that selects the method there must be exactly one";
             self.problems.push(Problem::key(path.clone(), what).advise("add `method: ROW`"));
         }
         let method =
@@ -128,16 +128,16 @@ impl Wirer<'_> {
     fn numbered(&mut self, row: RowId, raw: &RawHoming, path: &Path) {
         let row = self.rows.map.row(row);
         for number in raw.methods.keys().filter(|it| !row.admits(**it)) {
-            let what = format!("{} never holds {number}", row.id);
+            let what = format!("{} is never {number}", row.id);
             self.problems.push(Problem::key(path.key("methods").key(number), what));
         }
         for (i, number) in raw.no_steps.iter().enumerate() {
             let what = match () {
-                () if !row.admits(*number) => format!("{} never holds {number}", row.id),
+                () if !row.admits(*number) => format!("{} is never {number}", row.id),
                 () if raw.methods.contains_key(number) => {
-                    format!("{number} stands among the methods")
+                    format!("{number} is one of the methods")
                 }
-                () if raw.no_steps[..i].contains(number) => format!("{number} stands here twice"),
+                () if raw.no_steps[..i].contains(number) => format!("{number} is listed twice"),
                 () => continue,
             };
             self.problems.push(Problem::value(path.key("no_steps").index(i), what));
@@ -145,7 +145,7 @@ impl Wirer<'_> {
         let known = |it: &i64| raw.methods.contains_key(it) || raw.no_steps.contains(it);
         let mut all = row.spans.iter().flat_map(|(low, high)| *low..=*high);
         if let Some(number) = all.find(|it| !known(it)) {
-            let what = format!("{} can hold {number}, and there is no such method", row.id);
+            let what = format!("{} can be {number}, but there is no such method", row.id);
             let problem = Problem::key(path.key("methods"), what);
             self.problems.push(problem.advise("add it, or list it in `no_steps`"));
         }
@@ -154,9 +154,9 @@ impl Wirer<'_> {
     fn finish(&mut self, raw: &RawFinish, path: &Path) -> Option<Finish> {
         let position = self.word(&raw.position, "position", &path.key("position"))?;
         if raw.of_origin && !raw.go {
-            self.unused("of_origin", "the axis stays there", path);
+            self.unused("of_origin", "the axis stays at the origin", path);
         } else if raw.of_origin && keeps(position) {
-            self.unused("of_origin", "the register goes on from what it says", path);
+            self.unused("of_origin", "the position register is kept", path);
         }
         Some(Finish { go: raw.go, position, of_origin: raw.of_origin })
     }
@@ -185,14 +185,14 @@ impl Wirer<'_> {
             let name = setting.name();
             let wired = self.wiring.axis.setting(setting).is_some();
             if used && needed && !wired {
-                let what = format!("no row holds `{name}`, which a homing goes by");
+                let what = format!("the homing uses `{name}`, but no row holds it");
                 let advice = format!("add `{name}: ROW` to `quantities`");
                 self.problems.push(Problem::key(path.clone(), what).advise(advice));
             }
             if wired && !used {
-                let what = format!("`{name}` changes nothing: no homing goes by it");
+                let what = format!("`{name}` has no effect: no homing uses it");
                 let path = Path::root().key("quantities").key(name);
-                self.problems.push(Problem::key(path, what).advise("leave it out"));
+                self.problems.push(Problem::key(path, what).advise("remove it"));
             }
         }
         let limited = self.wiring.axis.setting(Setting::HomeTimeLimit).is_some();

@@ -33,9 +33,8 @@ impl Wirer<'_> {
         inputs: &[Input],
     ) {
         if raw.is_some() && !inputs.contains(&Input::CommandInhibit) {
-            let what = "changes nothing: no input is `command_inhibit`";
-            self.problems
-                .push(Problem::key(path.clone(), what).advise("wire it, or leave this out"));
+            let what = "has no effect: no input is `command_inhibit`";
+            self.problems.push(Problem::key(path.clone(), what).advise("wire it, or remove this"));
         }
         self.wiring.axis.inhibit = self.words_chosen(raw, "rule for inhibited commands", path);
     }
@@ -51,9 +50,8 @@ impl Wirer<'_> {
         }
         let starts = inputs.contains(&Input::InterruptStart);
         if raw.is_some() && !starts {
-            let what = "changes nothing: no input is `interrupt_start`";
-            self.problems
-                .push(Problem::key(path.clone(), what).advise("wire it, or leave this out"));
+            let what = "has no effect: no input is `interrupt_start`";
+            self.problems.push(Problem::key(path.clone(), what).advise("wire it, or remove this"));
         }
         let others = [Input::InterruptStart, Input::InterruptUnlock, Input::InterruptInhibit];
         let others = others.into_iter().filter(|it| inputs.contains(it)).map(Named::name);
@@ -62,9 +60,9 @@ impl Wirer<'_> {
         let names: Vec<_> = others.chain(outputs).collect();
         if raw.is_none() {
             for name in names {
-                let what = format!("`{name}` changes nothing without axis.interrupt");
+                let what = format!("`{name}` has no effect without axis.interrupt");
                 let path = Path::root().key("signals");
-                self.problems.push(Problem::key(path, what).advise("leave it out"));
+                self.problems.push(Problem::key(path, what).advise("remove it"));
             }
         }
     }

@@ -29,15 +29,16 @@ impl Limits {
 impl Wirer<'_> {
     pub(super) fn limits(&mut self, raw: Option<&RawLimits>) {
         let path = Path::root().key("limits");
-        let stop = raw.and_then(|it| self.words_chosen(&it.stop, "way to stop", &path.key("stop")));
+        let stop =
+            raw.and_then(|it| self.words_chosen(&it.stop, "stopping mode", &path.key("stop")));
         let soft = raw
             .and_then(|it| self.words_chosen(&it.soft, "rule for soft limits", &path.key("soft")));
         let has_soft = self.soft_limits(soft.as_ref(), &path);
         let inputs = self.inputs_wired();
         let switches = inputs.contains(&Input::LimitPos) || inputs.contains(&Input::LimitNeg);
         if raw.is_some() && !switches && !has_soft {
-            let what = "`limits` changes nothing: there is no limit";
-            let advice = "wire `limit_pos` and `limit_neg`, or leave it out";
+            let what = "`limits` has no effect: there is no limit";
+            let advice = "wire `limit_pos` and `limit_neg`, or remove it";
             self.problems.push(Problem::key(path, what).advise(advice));
         } else if soft.is_some() && !has_soft {
             self.unused("soft", "no rows hold soft limits", &path);
@@ -58,9 +59,9 @@ impl Wirer<'_> {
         if wired[0] != wired[1] {
             let [here, missing] = if wired[0] { softs } else { [softs[1], softs[0]] };
             let (here, missing) = (here.name(), missing.name());
-            let what = format!("`{here}` changes nothing: no row holds `{missing}`");
+            let what = format!("`{here}` has no effect: no row holds `{missing}`");
             let path = Path::root().key("quantities").key(here);
-            let advice = format!("add `{missing}: ROW`, or leave it out");
+            let advice = format!("add `{missing}: ROW`, or remove it");
             self.problems.push(Problem::key(path, what).advise(advice));
         }
         if wired == [false, false] {
@@ -70,10 +71,10 @@ impl Wirer<'_> {
         let path = path.key("soft");
         if !rules.is_empty() && rules.iter().all(|it| *it == SoftLimitRule::Off) {
             let what = "soft limits are never in force";
-            let advice = "take their rows out of `quantities` and leave this out";
+            let advice = "remove their rows from `quantities`, and this";
             self.problems.push(Problem::key(path, what).advise(advice));
         } else if rules.contains(&SoftLimitRule::AfterHoming) && self.wiring.homing.is_none() {
-            let what = "`after_homing` never comes: there is no `homing`";
+            let what = "`after_homing` has no effect: there is no `homing`";
             self.problems.push(Problem::key(path, what));
         }
         true

@@ -17,7 +17,7 @@ impl Wirer<'_> {
             let all = W::ALL.iter().map(|word| word.name());
             let advice = suggest::did_you_mean(name, all.clone())
                 .unwrap_or_else(|| format!("known: {}", all.collect::<Vec<_>>().join(", ")));
-            let what = format!("no {kind} `{name}`");
+            let what = format!("unknown {kind} `{name}`");
             self.problems.push(Problem::value(path.clone(), what).advise(advice));
         }
         found
@@ -61,8 +61,8 @@ impl Wirer<'_> {
 
     pub(super) fn codes_used(&mut self, codes: &BTreeMap<u16, String>, used: bool, path: &Path) {
         if !used && !codes.is_empty() {
-            let what = "`codes` changes nothing without `terminals` or `words`";
-            self.problems.push(Problem::key(path.key("codes"), what).advise("leave it out"));
+            let what = "`codes` has no effect without `terminals` or `words`";
+            self.problems.push(Problem::key(path.key("codes"), what).advise("remove it"));
         }
     }
 
@@ -86,8 +86,9 @@ impl Wirer<'_> {
     pub(super) fn enable_words(&mut self, ids: &[String], words: usize, path: &Path) -> Vec<RowId> {
         let path = path.key("enabled_by");
         if !ids.is_empty() && ids.len() != words {
-            let what = format!("{} enable words for {words} words", ids.len());
-            self.problems.push(Problem::value(path.clone(), what).advise("one each, or none"));
+            let what = format!("{} enable words, but {words} words", ids.len());
+            self.problems
+                .push(Problem::value(path.clone(), what).advise("give one per word, or none"));
         }
         self.row_list(ids, &path)
     }
@@ -112,9 +113,12 @@ impl Wirer<'_> {
                 continue;
             }
             let what = if usize::from(position) >= 16 * words {
-                format!("no word has position {position}, the last is {}", 16 * words - 1)
+                format!(
+                    "position {position} is beyond the last word, which ends at {}",
+                    16 * words - 1
+                )
             } else if positions.iter().any(|(taken, _)| *taken == position) {
-                format!("position {position} carries another signal already")
+                format!("position {position} already has another signal")
             } else {
                 positions.push((position, *signal));
                 continue;
@@ -137,14 +141,13 @@ impl Wirer<'_> {
     pub(super) fn show(&mut self, row: RowId, shows: Shows, path: &Path, at: At) {
         let shown = self.rows.map.row(row);
         if shown.access != Access::Read {
-            let what =
-                format!("{} shows what the drive computes, so it can't be written", shown.id);
+            let what = format!("{} shows a computed value and cannot be written", shown.id);
             let problem = Problem { at, ..Problem::value(path.clone(), what) };
             self.problems.push(problem.advise("give it `access: r`"));
         }
         let slot = &mut self.wiring.shows[usize::from(row.0)];
         if slot.is_some() {
-            let what = format!("{} shows something else already", shown.id);
+            let what = format!("{} already shows another value", shown.id);
             self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
             return;
         }
@@ -154,7 +157,7 @@ impl Wirer<'_> {
     pub(super) fn react(&mut self, row: RowId, reaction: Reaction, path: &Path, at: At) {
         let slot = &mut self.wiring.reactions[usize::from(row.0)];
         if *slot != Reaction::None && *slot != reaction {
-            let what = format!("{} is wired to something else already", self.rows.map.row(row).id);
+            let what = format!("{} is already wired to something else", self.rows.map.row(row).id);
             self.problems.push(Problem { at, ..Problem::value(path.clone(), what) });
             return;
         }
@@ -164,7 +167,7 @@ impl Wirer<'_> {
     pub(super) fn writable(&mut self, row: RowId, path: &Path, at: At) {
         let row = self.rows.map.row(row);
         if row.access == Access::Read {
-            let what = format!("{} is read only, so no master can set it", row.id);
+            let what = format!("{} is read-only, so no master can write it", row.id);
             let problem = Problem { at, ..Problem::value(path.clone(), what) };
             self.problems.push(problem.advise("give it `access: rw`"));
         }
@@ -173,7 +176,7 @@ impl Wirer<'_> {
     pub(super) fn one_word(&mut self, row: RowId, path: &Path) {
         let row = self.rows.map.row(row);
         if row.kind.words() != 1 {
-            let what = format!("{} has two words, and each of these has 16 bits", row.id);
+            let what = format!("{} is a 32-bit row, but a 16-bit row is needed", row.id);
             self.problems.push(Problem::value(path.clone(), what).advise("give it `type: u16`"));
         }
     }

@@ -17,7 +17,7 @@ impl Wirer<'_> {
             for (value, name) in values {
                 let path = path.key(value);
                 if !self.rows.map.row(row).admits(*value) {
-                    let what = format!("{register} refuses the value {value}");
+                    let what = format!("{register} does not accept {value}");
                     self.problems.push(Problem::key(path.clone(), what));
                 }
                 actions.extend(self.word::<Action>(name, "action", &path).map(|it| (*value, it)));
@@ -45,7 +45,7 @@ impl Wirer<'_> {
                 let path = path.key("modifiers").key(bit);
                 self.bit(*bit, row, &path);
                 if raw.bits.contains_key(bit) {
-                    let what = format!("bit {bit} triggers an action already");
+                    let what = format!("bit {bit} already triggers an action");
                     self.problems.push(Problem::key(path.clone(), what));
                 }
                 let Some(modifier) = self.word::<Modifier>(name, "modifier", &path) else {
@@ -53,8 +53,8 @@ impl Wirer<'_> {
                 };
                 if !actions.iter().any(|(_, action)| *action == Action::MoveStart) {
                     let what =
-                        format!("`{name}` changes nothing without `move_start` among the bits");
-                    self.problems.push(Problem::value(path, what).advise("leave it out"));
+                        format!("`{name}` has no effect without `move_start` among the bits");
+                    self.problems.push(Problem::value(path, what).advise("remove it"));
                 }
                 modifiers.push((*bit, modifier));
             }

@@ -12,7 +12,7 @@ impl Wirer<'_> {
     pub(super) fn quantities(&mut self, raw: &RawModel) {
         let path = Path::root().key("settings_taken");
         let taken = raw.settings_taken.as_deref();
-        let taken = taken.and_then(|it| self.word(it, "time for a setting", &path));
+        let taken = taken.and_then(|it| self.word(it, "effect time", &path));
         self.taken = taken.unwrap_or(Taken::AtOrder);
         let path = Path::root().key("quantities");
         for (name, raw) in &raw.quantities {
@@ -49,9 +49,8 @@ impl Wirer<'_> {
         path: &Path,
     ) -> SettingRow {
         self.dimension(row, setting.name(), setting.dimensions(), path);
-        let said = raw
-            .taken()
-            .and_then(|it| self.word::<Taken>(it, "time for a setting", &path.key("taken")));
+        let said =
+            raw.taken().and_then(|it| self.word::<Taken>(it, "effect time", &path.key("taken")));
         let printed = match self.rows.map.row(row).applies {
             Some(Applies::Now) => Some(Taken::Live),
             Some(Applies::AtStop) => Some(Taken::AtStart),
@@ -68,19 +67,18 @@ impl Wirer<'_> {
         let silent =
             |it: &SettingRow| !it.setting.is_bound() && self.rows.map.row(it.row).applies.is_none();
         if raw.settings_taken.is_some() && !self.wiring.axis.all_settings().any(silent) {
-            let what =
-                "`settings_taken` changes nothing: the rows of all settings say when they apply";
+            let what = "`settings_taken` has no effect: all settings have `applies` in their rows";
             let problem = Problem::key(Path::root().key("settings_taken"), what);
-            self.problems.push(problem.advise("leave it out"));
+            self.problems.push(problem.advise("remove it"));
         }
     }
 
     /// What no motion goes by counts whenever somebody looks.
     fn no_setting(&mut self, name: &str, raw: &RawQuantity, path: &Path) {
         if raw.taken().is_some() {
-            let what = format!("`taken` changes nothing: `{name}` is no setting of a motion");
+            let what = format!("`taken` has no effect: `{name}` is not a setting of a motion");
             let problem = Problem::key(path.key("taken"), what);
-            self.problems.push(problem.advise("leave it out"));
+            self.problems.push(problem.advise("remove it"));
         }
     }
 
@@ -92,7 +90,7 @@ impl Wirer<'_> {
         };
         let advice = suggest::did_you_mean(name, names())
             .unwrap_or_else(|| format!("known: {}", names().collect::<Vec<_>>().join(", ")));
-        let what = format!("no quantity `{name}`");
+        let what = format!("unknown quantity `{name}`");
         self.problems.push(Problem::key(path.clone(), what).advise(advice));
     }
 
@@ -103,7 +101,7 @@ impl Wirer<'_> {
         }
         let symbols: Vec<_> = want.iter().flat_map(|it| Unit::symbols_of(*it)).collect();
         let (what, advice) = match symbols.as_slice() {
-            [] => ("is a plain number".to_owned(), "take the unit away".to_owned()),
+            [] => ("has no unit".to_owned(), "remove the unit".to_owned()),
             [first, ..] => {
                 let what = format!("is in {}", symbols.join(" or "));
                 (what, format!("give the row `unit: {first}`"))

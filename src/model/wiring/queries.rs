@@ -54,7 +54,7 @@ impl Wirer<'_> {
             let names = SWITCHES.map(Named::name);
             let advice = suggest::did_you_mean(name, names)
                 .unwrap_or_else(|| format!("known: {}", names.join(", ")));
-            let what = format!("no switch `{name}`");
+            let what = format!("unknown switch `{name}`");
             self.problems.push(Problem::value(path.clone(), what).advise(advice));
         }
         found
@@ -62,8 +62,8 @@ impl Wirer<'_> {
 
     /// Tells of `key`, which has no effect.
     pub(super) fn unused(&mut self, key: &str, why: &str, path: &Path) {
-        let what = format!("`{key}` changes nothing: {why}");
-        self.problems.push(Problem::key(path.key(key), what).advise("leave it out"));
+        let what = format!("`{key}` has no effect: {why}");
+        self.problems.push(Problem::key(path.key(key), what).advise("remove it"));
     }
 
     /// Tells of `output` if it shows although nothing turns it on.
@@ -71,7 +71,7 @@ impl Wirer<'_> {
         if self.is_shown(output) {
             let what = format!("output signal `{}` is never on: {why}", output.name());
             let path = Path::root().key("signals").key("outputs");
-            self.problems.push(Problem::key(path, what).advise("leave it out"));
+            self.problems.push(Problem::key(path, what).advise("remove it"));
         }
     }
 
@@ -79,7 +79,7 @@ impl Wirer<'_> {
     pub(super) fn needs_alarm(&mut self, name: &str, cause: AlarmCause, path: Path) {
         if self.wiring.alarm(cause).is_none() {
             let cause = cause.name();
-            let what = format!("`{name}` ends in alarm `{cause}`, which has no number");
+            let what = format!("`{name}` can raise alarm `{cause}`, which has no number");
             let advice = format!("add `{cause}: {{code: N}}` to `alarms`");
             self.problems.push(Problem::key(path, what).advise(advice));
         }

@@ -80,7 +80,7 @@ impl Wirer<'_> {
         let path = path.key("trigger");
         let trigger = match &raw.trigger {
             None => Choice::Fixed(Lasts::Level),
-            raw => self.words_chosen(raw, "trigger of a run", &path)?,
+            raw => self.words_chosen(raw, "trigger of a velocity segment", &path)?,
         };
         Some(VelocitySegments { first, list, trigger })
     }
@@ -114,22 +114,23 @@ impl Wirer<'_> {
     ) -> Option<[u16; 2]> {
         let [first, last] = n;
         if first > last {
-            let what = format!("segments {first} to {last} are none");
+            let what = format!("the range {first} to {last} is empty");
             let problem = Problem::value(path.key("n"), what);
-            self.problems.push(problem.advise("first, then last"));
+            self.problems.push(problem.advise("give the lower number first"));
             return None;
         }
         let reach = 1 << SELECTS.iter().take_while(|it| inputs.contains(it)).count();
         let count = usize::from(last - first) + 1;
         if count > SEGMENTS_MAX {
-            let what = format!("{count} segments, and {SEGMENTS_MAX} are the most");
+            let what = format!("{count} segments, but at most {SEGMENTS_MAX} are allowed");
             self.problems.push(Problem::value(path.key("n"), what));
             return None;
         }
         if count > reach && !chained {
-            let what = format!("{count} segments, and the inputs select {reach}");
+            let what = format!("{count} segments, but the inputs can select only {reach}");
             let problem = Problem::value(path.key("n"), what);
-            self.problems.push(problem.advise("wire `select_0` to `select_3`, or take less"));
+            self.problems
+                .push(problem.advise("wire `select_0` to `select_3`, or use fewer segments"));
         }
         Some(n)
     }
@@ -150,7 +151,7 @@ impl Wirer<'_> {
             let Some(setting) = Setting::parse(name).filter(|_| all().any(|it| it == name)) else {
                 let advice = suggest::did_you_mean(name, all())
                     .unwrap_or_else(|| format!("known: {}", all().collect::<Vec<_>>().join(", ")));
-                let what = format!("nothing here goes by `{name}`");
+                let what = format!("`{name}` is not used here");
                 self.problems.push(Problem::key(path, what).advise(advice));
                 continue;
             };
@@ -178,6 +179,6 @@ impl Wirer<'_> {
             }
             Some(fixed) => fixed.clone(),
         };
-        self.words_chosen(&Some(of_segment), "kind of target", path)
+        self.words_chosen(&Some(of_segment), "target kind", path)
     }
 }

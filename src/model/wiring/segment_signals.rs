@@ -32,9 +32,9 @@ impl Wirer<'_> {
         goes_with.extend(SELECTS.map(|it| (it, moves || runs, "axis.segments")));
         for (input, there, what) in goes_with {
             if !there && inputs.contains(&input) {
-                let what = format!("`{}` changes nothing without {what}", input.name());
+                let what = format!("`{}` has no effect without {what}", input.name());
                 let path = Path::root().key("signals");
-                self.problems.push(Problem::key(path, what).advise("leave it out"));
+                self.problems.push(Problem::key(path, what).advise("remove it"));
             }
         }
         let needs = [
@@ -44,8 +44,8 @@ impl Wirer<'_> {
         ];
         for (there, path, input) in needs {
             if there && !inputs.contains(&input) {
-                let what = format!("changes nothing: no input is `{}`", input.name());
-                let advice = "wire it, or leave this out";
+                let what = format!("has no effect: no input is `{}`", input.name());
+                let advice = "wire it, or remove this";
                 self.problems.push(Problem::key(path, what).advise(advice));
             }
         }
@@ -74,7 +74,7 @@ impl Wirer<'_> {
         let names: Vec<_> = bits.chain(numbers).collect();
         for (path, name) in names {
             let what = format!("`{name}` is always 0 without axis.segments.position");
-            self.problems.push(Problem::key(path, what).advise("leave it out"));
+            self.problems.push(Problem::key(path, what).advise("remove it"));
         }
     }
 }

@@ -81,9 +81,9 @@ impl Wirer<'_> {
             names.push((window.name(), quantities.key(window.name())));
         }
         for (name, path) in names {
-            let what = format!("`{name}` changes nothing: the axis is never behind its command");
+            let what = format!("`{name}` has no effect: the axis never lags behind its command");
             let problem = Problem::key(path, what);
-            self.problems.push(problem.advise("give `axis` a `position_gain`, or leave it out"));
+            self.problems.push(problem.advise("give `axis` a `position_gain`, or remove it"));
         }
     }
 
@@ -93,7 +93,7 @@ impl Wirer<'_> {
             let there = self.wiring.threshold(threshold).is_some();
             if self.is_shown(output) && !there && !optional {
                 let (output, name) = (output.name(), threshold.name());
-                let what = format!("`{output}` shows, but nothing says what `{name}` is");
+                let what = format!("`{output}` is shown, but `{name}` is missing");
                 let problem = Problem::key(Path::root().key("signals").key("outputs"), what);
                 let advice =
                     format!("add `{name}: ROW`, or a number with its unit, to `quantities`");
@@ -105,9 +105,9 @@ impl Wirer<'_> {
             let of = |it: &&(Output, Threshold, bool)| it.1 == threshold;
             if !USES.iter().filter(of).any(|(output, ..)| self.is_shown(*output)) {
                 let name = threshold.name();
-                let what = format!("`{name}` changes nothing: no output that goes by it shows");
+                let what = format!("`{name}` has no effect: no output that uses it is shown");
                 let path = Path::root().key("quantities").key(name);
-                self.problems.push(Problem::key(path, what).advise("show one, or leave it out"));
+                self.problems.push(Problem::key(path, what).advise("show one, or remove it"));
             }
         }
     }

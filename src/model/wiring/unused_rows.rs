@@ -25,9 +25,8 @@ pub(in crate::model) fn check_inert(
         let waits = !fits && wiring.reaction(id) != Reaction::Line;
         if wired && waits && !told.contains(&path) {
             told.push(path);
-            let what =
-                format!("{} takes effect at once, so `applies` can say nothing else", row.id);
-            problems.push(Problem::key(path.key("applies"), what).advise("leave it out"));
+            let what = format!("{} takes effect immediately, so `applies` must be `now`", row.id);
+            problems.push(Problem::key(path.key("applies"), what).advise("remove it"));
         }
         if wired != row.inert || told.contains(&path) {
             continue;
@@ -35,12 +34,12 @@ pub(in crate::model) fn check_inert(
         told.push(path);
         problems.push(match wired {
             true => {
-                let what = format!("{} is wired, so `sim: none` is not true", row.id);
-                Problem::key(path.key("sim"), what).advise("leave it out")
+                let what = format!("{} is wired, so `sim: none` is wrong", row.id);
+                Problem::key(path.key("sim"), what).advise("remove it")
             }
             false => {
-                let what = format!("{} is wired to nothing", row.id);
-                Problem::key(path.clone(), what).advise("say so: `sim: none`")
+                let what = format!("{} is not wired", row.id);
+                Problem::key(path.clone(), what).advise("add `sim: none`")
             }
         });
     }

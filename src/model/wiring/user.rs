@@ -12,11 +12,11 @@ impl Wirer<'_> {
         let at = path.key("user");
         match (register, shown) {
             (Some(_), None) => {
-                let what = "`user` changes nothing: neither `user_0` nor its kin shows anywhere";
+                let what = "`user` has no effect: none of `user_0`, `user_1`, `user_2` is shown";
                 self.problems.push(Problem::key(at.clone(), what).advise("show one"));
             }
             (None, Some(name)) => {
-                let what = format!("`{name}` shows, but no row says what");
+                let what = format!("`{name}` is shown, but no row holds it");
                 let problem = Problem::key(path.clone(), what);
                 self.problems.push(problem.advise("add `user: ROW` to `outputs`"));
             }

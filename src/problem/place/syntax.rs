@@ -16,7 +16,7 @@ fn words(info: &str) -> (String, Option<String>) {
         let c = c.trim_matches(['`', '\'']);
         // The parser quotes the character, so a back-tick is lost by trimming.
         let c = if c.is_empty() { "`" } else { c };
-        return (format!("a value can't begin with {c}"), Some("put it in quotes".into()));
+        return (format!("a value cannot begin with {c}"), Some("put it in quotes".into()));
     }
     for (part, what, advice) in WORDS {
         if info.contains(part) {
@@ -29,30 +29,30 @@ fn words(info: &str) -> (String, Option<String>) {
 /// A part of the parser's message, what we say, and the advice (empty: none). The first that fits.
 #[rustfmt::skip]
 const WORDS: &[(&str, &str, &str)] = &[
-    ("mapping values are not allowed", "a `:` where no key can end", "check the indentation, or put a value that holds `: ` in quotes"),
-    ("illegal placement of ':'", "a `:` where no key can end", "a `[` or `{` above may not be closed"),
-    ("mapping keys are not allowed", "a `?` where no key can begin", "put it in quotes"),
-    ("sequence entries are not allowed", "a `-` where no list can begin", "check the indentation"),
-    ("is only valid inside a block", "a `-` where no list can begin", "check the indentation"),
-    ("block mapping, did not find expected key", "no key where one should be", "check the indentation"),
-    ("did not find expected '-' indicator", "no `-` where the next item should be", "check the indentation"),
-    ("flow mapping, did not find expected ',' or '}'", "a `{` that is not closed, or a `,` missing", ""),
-    ("flow sequence, expected ',' or ']'", "a `[` that is not closed, or a `,` missing", ""),
-    ("misplaced bracket", "a bracket that closes nothing", ""),
-    ("found unexpected end of stream", "a quote that is not closed", ""),
-    ("found unexpected document indicator", "a quote that is not closed", ""),
-    ("after double-quoted scalar", "text behind a closing quote", ""),
-    ("unknown escape character", "an escape that YAML does not know", "in single quotes a backslash is only a backslash"),
-    ("simple key expect", "a key without `:`", ""),
-    ("did not find expected node content", "no value where one should be", ""),
-    ("found a tab", "a tab in or behind this value", "use spaces"),
+    ("mapping values are not allowed", "unexpected `:`", "check the indentation, or put a value that holds `: ` in quotes"),
+    ("illegal placement of ':'", "unexpected `:`", "an earlier `[` or `{` may not be closed"),
+    ("mapping keys are not allowed", "unexpected `?`", "put it in quotes"),
+    ("sequence entries are not allowed", "unexpected `-`", "check the indentation"),
+    ("is only valid inside a block", "unexpected `-`", "check the indentation"),
+    ("block mapping, did not find expected key", "expected a key", "check the indentation"),
+    ("did not find expected '-' indicator", "expected `-` of the next item", "check the indentation"),
+    ("flow mapping, did not find expected ',' or '}'", "unclosed `{`, or a missing `,`", ""),
+    ("flow sequence, expected ',' or ']'", "unclosed `[`, or a missing `,`", ""),
+    ("misplaced bracket", "unmatched closing bracket", ""),
+    ("found unexpected end of stream", "unclosed quote", ""),
+    ("found unexpected document indicator", "unclosed quote", ""),
+    ("after double-quoted scalar", "text after a closing quote", ""),
+    ("unknown escape character", "unknown escape sequence", "in single quotes a backslash is not an escape"),
+    ("simple key expect", "expected `:` after the key", ""),
+    ("did not find expected node content", "expected a value", ""),
+    ("found a tab", "a tab in or after this value", "use spaces"),
     ("tabs disallowed", "a tab in the indentation", "use spaces"),
     ("tab cannot be used", "a tab in the indentation", "use spaces"),
-    ("invalid indentation in flow", "a `[` or `{` above that is not closed", ""),
-    ("invalid indentation", "a line that is not indented enough", ""),
-    ("wrongly indented", "a line that is not indented enough", ""),
-    ("separated from other tokens by whitespace", "no space before a `#`", ""),
-    ("expected <document start>", "text behind the end of the document", "check the indentation"),
+    ("invalid indentation in flow", "an earlier `[` or `{` is not closed", ""),
+    ("invalid indentation", "this line is not indented enough", ""),
+    ("wrongly indented", "this line is not indented enough", ""),
+    ("separated from other tokens by whitespace", "missing space before `#`", ""),
+    ("expected <document start>", "text after the end of the document", "check the indentation"),
     ("unprintable character", "an unprintable character", ""),
     ("byte order mark", "a byte order mark inside the text", ""),
 ];
@@ -64,20 +64,20 @@ mod tests {
     #[test]
     fn one_problem_in_plain_words() {
         for (text, line, column, what) in [
-            ("a: b: c", 1, 5, "a `:` where no key can end"),
-            ("中文: b\n  字: c", 2, 4, "a `:` where no key can end"),
-            ("a: 1\na: 2\nb: [1, 2\n\n", 3, 9, "a `[` that is not closed, or a `,` missing"),
-            ("b: {x: 1\nc: 2", 2, 2, "a `{` that is not closed, or a `,` missing"),
-            ("a: [1,\n\nb: 2\n", 3, 1, "a `[` or `{` above that is not closed"),
-            ("x: 1\n\ty: 2\n", 1, 4, "a tab in or behind this value"),
+            ("a: b: c", 1, 5, "unexpected `:`"),
+            ("中文: b\n  字: c", 2, 4, "unexpected `:`"),
+            ("a: 1\na: 2\nb: [1, 2\n\n", 3, 9, "unclosed `[`, or a missing `,`"),
+            ("b: {x: 1\nc: 2", 2, 2, "unclosed `{`, or a missing `,`"),
+            ("a: [1,\n\nb: 2\n", 3, 1, "an earlier `[` or `{` is not closed"),
+            ("x: 1\n\ty: 2\n", 1, 4, "a tab in or after this value"),
             ("a:\n\t- b", 2, 2, "a tab in the indentation"),
-            ("a: \"x\n", 1, 4, "a quote that is not closed"),
-            ("a: @x", 1, 4, "a value can't begin with @"),
-            ("a: `x`", 1, 4, "a value can't begin with `"),
-            ("a: 1\nb\nc: 2", 3, 1, "a key without `:`"),
-            ("  a: 1\n b: 2", 2, 2, "text behind the end of the document"),
-            ("a: ]", 1, 4, "a bracket that closes nothing"),
-            ("a: [1\n  b: c\n  d: e", 2, 4, "a `:` where no key can end"),
+            ("a: \"x\n", 1, 4, "unclosed quote"),
+            ("a: @x", 1, 4, "a value cannot begin with @"),
+            ("a: `x`", 1, 4, "a value cannot begin with `"),
+            ("a: 1\nb\nc: 2", 3, 1, "expected `:` after the key"),
+            ("  a: 1\n b: 2", 2, 2, "text after the end of the document"),
+            ("a: ]", 1, 4, "unmatched closing bracket"),
+            ("a: [1\n  b: c\n  d: e", 2, 4, "unexpected `:`"),
             ("%YAML 1.2 x\n", 1, 1, "not YAML: while scanning a directive"),
         ] {
             let (places, problems) = Places::parse(text);

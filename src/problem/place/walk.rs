@@ -106,7 +106,7 @@ impl Walk<'_> {
             self.stack.last().map(|frame| &frame.inside),
             Some(Inside::Map { pending: None, .. })
         );
-        let (what, most) = if is_key { ("a key", bounds::KEY) } else { ("a text", bounds::TEXT) };
+        let (what, most) = if is_key { ("a key", bounds::KEY) } else { ("a string", bounds::TEXT) };
         // Bytes are counted in no time, and are no fewer than characters.
         (text.len() > most && text.chars().count() > most).then_some((what, most))
     }

@@ -9,26 +9,26 @@ pub(super) fn problem(path: Path, message: &str) -> Problem {
     // The path tells the place already.
     let message = message.split(" at line ").next().unwrap_or(message).trim_end_matches('.');
     if let Some(key) = message.strip_prefix("missing field ") {
-        return Problem::value(path, format!("key {key} is missing"));
+        return Problem::value(path, format!("missing key {key}"));
     }
     if let Some((name, known)) = one_of(message, "unknown field `") {
         let advice = suggest::did_you_mean(name, known);
-        return Problem::value(path, format!("there is no key `{name}` here")).advise_if(advice);
+        return Problem::value(path, format!("unknown key `{name}`")).advise_if(advice);
     }
     if let Some((name, known)) = one_of(message, "unknown variant `") {
-        let what = format!("`{name}` is none of {}", known.join(", "));
+        let what = format!("expected one of {}, found `{name}`", known.join(", "));
         let advice = suggest::did_you_mean(name, known);
         return Problem::value(path, what).advise_if(advice);
     }
     if message.contains("expected any YAML value") {
-        return Problem::value(path, "a number with too many digits");
+        return Problem::value(path, "the number has too many digits");
     }
     let Some((got, want)) = type_or_value(message) else {
         return Problem::value(path, message);
     };
     let bare = ["integer ", "floating point ", "boolean "].iter().any(|it| got.starts_with(it));
     let advice = (want == "a string" && bare).then(|| "put it in quotes".to_owned());
-    let what = format!("{} should stand here, not {}", wanted(want), found(got));
+    let what = format!("expected {}, found {}", wanted(want), found(got));
     Problem::value(path, what).advise_if(advice)
 }
 
@@ -46,16 +46,16 @@ fn type_or_value(message: &str) -> Option<(&str, &str)> {
 
 fn wanted(want: &str) -> &str {
     match want {
-        "a string" => "a text",
+        "a string" => "a string",
         "u8" => "a number from 0 to 255",
         "u16" => "a number from 0 to 65535",
-        "u32" | "u64" => "a whole number from 0 up",
+        "u32" | "u64" => "a non-negative integer",
         "i32" => "a number from -2147483648 to 2147483647",
-        "i64" => "a whole number",
+        "i64" => "an integer",
         "f64" => "a number",
         "a boolean" => "true or false",
         "a sequence" => "a list",
-        "an array of length 2" => "a list of two",
+        "an array of length 2" => "a list of two values",
         _ if want.starts_with("struct ") => "a map",
         _ => want,
     }
@@ -70,7 +70,7 @@ fn found(got: &str) -> String {
         "boolean" => value.into(),
         "integer" => value.trim_matches('`').into(),
         "floating" => value.trim_start_matches("point ").trim_matches('`').into(),
-        "string" => format!("the text {value}"),
+        "string" => format!("the string {value}"),
         _ if kind.parse::<usize>().is_ok() => format!("one of {kind}"),
         _ => got.into(),
     }
@@ -83,40 +83,37 @@ mod tests {
     #[test]
     fn in_plain_words() {
         for (message, want) in [
-            ("missing field `at` at line 3 column 4", "key `at` is missing"),
+            ("missing field `at` at line 3 column 4", "missing key `at`"),
             (
                 "unknown variant `u61`, expected one of `u16`, `i16`",
-                "`u61` is none of u16, i16 (did you mean `u16`?)",
+                "expected one of u16, i16, found `u61` (did you mean `u16`?)",
             ),
             (
                 "unknown field `digt`, expected one of `register`, `digit`",
-                "there is no key `digt` here (did you mean `digit`?)",
+                "unknown key `digt` (did you mean `digit`?)",
             ),
-            ("unknown variant `x`, expected `none`", "`x` is none of none"),
+            ("unknown variant `x`, expected `none`", "expected one of none, found `x`"),
             (
                 "invalid type: floating point `80.0`, expected a string",
-                "a text should stand here, not 80.0 (put it in quotes)",
+                "expected a string, found 80.0 (put it in quotes)",
             ),
             (
                 "invalid type: boolean `true`, expected a string",
-                "a text should stand here, not `true` (put it in quotes)",
+                "expected a string, found `true` (put it in quotes)",
             ),
-            ("invalid type: sequence, expected a string", "a text should stand here, not a list"),
+            ("invalid type: sequence, expected a string", "expected a string, found a list"),
             (
                 "invalid value: integer `257`, expected u8",
-                "a number from 0 to 255 should stand here, not 257",
+                "expected a number from 0 to 255, found 257",
             ),
             (
                 "invalid type: string \"a, expected b\", expected u16",
-                "a number from 0 to 65535 should stand here, not the text \"a, expected b\"",
+                "expected a number from 0 to 65535, found the string \"a, expected b\"",
             ),
-            (
-                "invalid type: unit value, expected struct Row",
-                "a map should stand here, not nothing",
-            ),
+            ("invalid type: unit value, expected struct Row", "expected a map, found nothing"),
             (
                 "invalid length 1, expected an array of length 2",
-                "a list of two should stand here, not one of 1",
+                "expected a list of two values, found one of 1",
             ),
             ("a range is [low, high].", "a range is [low, high]"),
         ] {

@@ -59,7 +59,7 @@ impl Pty {
             .map_err(|e| said(e.kind(), format!("cannot open a pseudo-terminal: {e}")))?;
         // Before anybody can know of it.
         let presence = Presence::watch(&path).inspect_err(|error| {
-            warn!("{}: can't see when a program closes it: {error}", path.display());
+            warn!("{}: cannot detect when a program closes it: {error}", path.display());
         });
         let link = link.map(|at| PortSymlink::create(at, &path)).transpose()?;
         let (master, presence) = (watch(master)?, presence.ok());

@@ -140,11 +140,11 @@ impl Serial {
         self.note = (!got.serves(wanted)).then(|| {
             let path = &self.path;
             let why = if is_pseudo_terminal(path) {
-                " (a pseudo-terminal; bytes pass all the same)"
+                " (a pseudo-terminal; bytes pass nevertheless)"
             } else {
                 ""
             };
-            format!("{path}: asked for {wanted}, it took {got}{why}")
+            format!("{path}: requested {wanted}, but the port is at {got}{why}")
         });
     }
 }
@@ -153,7 +153,7 @@ fn refusal(path: &str, error: &tokio_serial::Error) -> io::Error {
     use tokio_serial::ErrorKind as Kind;
     let (kind, why) = match error.kind {
         // The library's word for a port that is locked, whether by ioctl or by file lock.
-        Kind::NoDevice => (ErrorKind::ResourceBusy, "another program has it open"),
+        Kind::NoDevice => (ErrorKind::ResourceBusy, "in use by another program"),
         Kind::Io(ErrorKind::NotFound) => (ErrorKind::NotFound, "no such device"),
         Kind::Io(ErrorKind::PermissionDenied) => (
             ErrorKind::PermissionDenied,
@@ -261,7 +261,9 @@ mod tests {
         if cfg!(target_os = "linux") {
             let note = serial.note().unwrap();
             assert!(
-                note.starts_with(&format!("{path}: asked for 57600-8E2, it took 57600-8N2 (a ")),
+                note.starts_with(&format!(
+                    "{path}: requested 57600-8E2, but the port is at 57600-8N2 (a "
+                )),
                 "{note}"
             );
             assert_eq!(pty.master_settings().unwrap(), (57600, 2));
@@ -280,7 +282,7 @@ mod tests {
         let file = tempfile::NamedTempFile::new().unwrap();
         let file = file.path().to_str().unwrap();
         for (path, kind, words) in [
-            (path, ErrorKind::ResourceBusy, "another program has it open"),
+            (path, ErrorKind::ResourceBusy, "in use by another program"),
             ("/dev/ttyNone9", ErrorKind::NotFound, "no such device"),
             (file, ErrorKind::InvalidInput, "is not a serial port"),
             ("/dev/null", ErrorKind::Other, "cannot open /dev/null: "),

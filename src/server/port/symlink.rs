@@ -73,7 +73,7 @@ fn identity(at: &Path) -> Option<(u64, u64)> {
 fn replace(at: &Path, target: &Path) -> io::Result<()> {
     let link = at.symlink_metadata()?;
     if !link.is_symlink() {
-        let what = "exists and is not a symlink: will not replace it";
+        let what = "exists and is not a symlink: not replaced";
         return Err(said(ErrorKind::AlreadyExists, what));
     }
     match std::fs::metadata(at) {
@@ -83,8 +83,7 @@ fn replace(at: &Path, target: &Path) -> io::Result<()> {
             let target = std::fs::canonicalize(at)?;
             let use_of =
                 if is_pseudo_terminal(&target.to_string_lossy()) { "is in use" } else { "exists" };
-            let what =
-                format!("leads to {}, which {use_of}: will not replace it", target.display());
+            let what = format!("points to {}, which {use_of}: not replaced", target.display());
             return Err(said(ErrorKind::ResourceBusy, what));
         }
         Err(error) => return Err(error),
@@ -200,10 +199,7 @@ mod tests {
             symlink(there, &at).unwrap();
             let refused = PortSymlink::create(&at, Path::new(GONE)).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::ResourceBusy, "{refused}");
-            assert!(
-                refused.to_string().ends_with(&format!("{says}: will not replace it")),
-                "{refused}"
-            );
+            assert!(refused.to_string().ends_with(&format!("{says}: not replaced")), "{refused}");
             assert_eq!(target(&at), there);
             std::fs::remove_file(&at).unwrap();
         }
@@ -219,7 +215,7 @@ mod tests {
         for again in [&at, &dir.path().join("./cell.tty"), &dir.path().join("../").join(&at)] {
             let refused = PortSymlink::create(again, Path::new("/dev/pts/gone-2")).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::ResourceBusy);
-            assert!(refused.to_string().ends_with("a running drivemu has it"), "{refused}");
+            assert!(refused.to_string().ends_with("used by a running drivemu"), "{refused}");
         }
         assert_eq!(target(&at), Path::new(GONE));
     }
@@ -263,7 +259,7 @@ mod tests {
             assert_eq!(
                 refused.to_string(),
                 format!(
-                    "cannot create the link {}: exists and is not a symlink: will not replace it",
+                    "cannot create the link {}: exists and is not a symlink: not replaced",
                     at.display()
                 )
             );

@@ -214,10 +214,10 @@ impl Listener {
 
 fn refusal(addr: &str, error: &io::Error) -> io::Error {
     let why = match error.kind() {
-        ErrorKind::AddrInUse => "another program listens there (port 0 picks a free one)".into(),
-        ErrorKind::AddrNotAvailable => "this machine has no such address".into(),
+        ErrorKind::AddrInUse => "address in use (port 0 picks a free one)".into(),
+        ErrorKind::AddrNotAvailable => "not an address of this machine".into(),
         ErrorKind::PermissionDenied => "permission denied (ports below 1024 need root)".into(),
-        ErrorKind::InvalidInput => "that is not HOST:PORT".into(),
+        ErrorKind::InvalidInput => "expected HOST:PORT".into(),
         _ => error.to_string(),
     };
     said(error.kind(), format!("cannot listen on {addr}: {why}"))

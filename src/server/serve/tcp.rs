@@ -63,13 +63,13 @@ pub async fn serve_tcp(mut line: LineServer, mut listener: Listener) {
             Some(TcpEvent::Closed(id, error)) => {
                 clients.remove(id).into_iter().for_each(|link| line.hang_up(link));
                 match error {
-                    Some(error) => warn!("{}: a client is gone: {error}", line.name),
-                    None => info!("{}: a client has left", line.name),
+                    Some(error) => warn!("{}: client connection lost: {error}", line.name),
+                    None => info!("{}: client disconnected", line.name),
                 }
                 // Told once a crowd, not once a client.
                 if let count @ 1.. = std::mem::take(&mut clients.displaced) {
                     info!(
-                        "{}: fewer than {MAX_CLIENTS} clients again; {count} were displaced",
+                        "{}: fewer than {MAX_CLIENTS} clients again; {count} were disconnected",
                         line.name
                     );
                 }
@@ -78,7 +78,7 @@ pub async fn serve_tcp(mut line: LineServer, mut listener: Listener) {
                 clients.remove(id).into_iter().for_each(|link| line.hang_up(link));
                 if clients.displaced == 0 {
                     warn!(
-                        "{}: {MAX_CLIENTS} clients are connected, which is the limit: each new one displaces \
+                        "{}: {MAX_CLIENTS} clients are connected, which is the limit: each new one disconnects \
                          the one that has been silent longest",
                         line.name
                     );
@@ -86,7 +86,7 @@ pub async fn serve_tcp(mut line: LineServer, mut listener: Listener) {
                 clients.displaced += 1;
             }
             Some(TcpEvent::NotAccepting(error)) => {
-                warn!("{}: can't accept clients for now: {error}", line.name);
+                warn!("{}: cannot accept clients at the moment: {error}", line.name);
                 rested = Some(Clock::wall_after(REST));
             }
         }

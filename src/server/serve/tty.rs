@@ -29,7 +29,7 @@ pub async fn serve_tty(mut line: LineServer, mut tty: Tty, reopen: Reopen) {
     let mut watch = Watch::default();
     loop {
         let lost = serve_until_lost(&mut line, &mut tty, &mut watch).await;
-        warn!("{}: the port is gone ({lost}); waiting for it to come back", line.name);
+        warn!("{}: the port disappeared ({lost}); waiting for it", line.name);
         tty = wait_for(&mut line, &reopen).await;
         info!("{}: the port is back", line.name);
     }

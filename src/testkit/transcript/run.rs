@@ -124,7 +124,7 @@ impl TranscriptPlayer {
                 let drive = match unit {
                     None => self.rig.drive(),
                     Some(unit) => {
-                        self.rig.unit(*unit).ok_or(format!("nobody answers to unit {unit}"))?
+                        self.rig.unit(*unit).ok_or(format!("no drive has unit {unit}"))?
                     }
                 };
                 checks.iter().try_for_each(|check| look(drive, check))?;
@@ -134,7 +134,7 @@ impl TranscriptPlayer {
                 let new = self.rig.log_from(self.told);
                 let says = |line: &str| line.contains(want.as_str());
                 let at = new.lines().position(says).ok_or_else(|| {
-                    format!("the log does not say `{want}`; since then it said\n{new}")
+                    format!("the log does not contain `{want}`; new lines:\n{new}")
                 })?;
                 self.told += at + 1;
             }
@@ -158,7 +158,7 @@ impl TranscriptPlayer {
     }
 
     fn take_answer(&mut self) -> Result<Vec<u8>, String> {
-        self.pending.take().map(|(_, got)| got).ok_or("nothing was asked".into())
+        self.pending.take().map(|(_, got)| got).ok_or("no request was sent".into())
     }
 
     /// Does the line talk ASCII right now? Its drives may have taken it along to another mode.
@@ -208,7 +208,7 @@ fn look(drive: &Drive, check: &Check) -> Result<(), String> {
     } else if let Some(row) = row {
         drive.model().map.row(row).kind.value(drive.show(row)).to_string()
     } else {
-        return Err(format!("no signal, quantity or register `{name}`"));
+        return Err(format!("unknown signal, quantity or register `{name}`"));
     };
     let as_number = parse_integer(want).map(|number| number.to_string());
     match got == *want || Some(&got) == as_number.as_ref() {

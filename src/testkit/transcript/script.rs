@@ -107,7 +107,7 @@ impl Script {
             "<<" => TranscriptStep::Bytes(silence_or(rest, bytes)?),
             "<" => TranscriptStep::Answer(silence_or(rest, hex)?),
             "+" => TranscriptStep::Wait(
-                parse_duration(rest).ok_or_else(|| format!("`{rest}` is no time"))?,
+                parse_duration(rest).ok_or_else(|| format!("`{rest}` is not a duration"))?,
             ),
             "!" => TranscriptStep::Do(rest.split_whitespace().map(str::to_owned).collect()),
             "log" => TranscriptStep::Log(rest.to_owned()),
@@ -128,7 +128,7 @@ impl Script {
                 match more {
                     [] => {}
                     ["unit", unit] => drive.unit = Some(number_of(unit)?),
-                    _ => return Err("write `model NAME` or `model NAME unit N`".into()),
+                    _ => return Err("expected `model NAME` or `model NAME unit N`".into()),
                 }
                 self.drives.push(drive);
                 return Ok(());
@@ -139,7 +139,7 @@ impl Script {
                     match *flag {
                         "strict" => self.strict = true,
                         "ascii" => self.ascii = Some(true),
-                        _ => return Err(format!("no flag `{flag}`: strict, ascii")),
+                        _ => return Err(format!("unknown flag `{flag}`; known: strict, ascii")),
                     }
                 }
                 return Ok(());
@@ -150,27 +150,27 @@ impl Script {
             }
             _ => {}
         }
-        let drive = self.drives.last_mut().ok_or("the first line is `model NAME`")?;
+        let drive = self.drives.last_mut().ok_or("the first line must be `model NAME`")?;
         match (word, words.as_slice()) {
             ("option", [name, choice]) => {
                 drive.options.insert((*name).into(), (*choice).into());
             }
             ("set", [name, value]) => {
                 let value =
-                    parse_integer(value).ok_or_else(|| format!("`{value}` is no number"))?;
+                    parse_integer(value).ok_or_else(|| format!("`{value}` is not a number"))?;
                 drive.set.insert((*name).into(), value);
             }
             ("switches", [value]) => drive.switches = Some(number_of(value)?),
             ("terminal", [name]) => drive.terminals.push((*name).into()),
             ("position", [value]) => {
                 let position = parse_integer(value).and_then(|it| it.try_into().ok());
-                drive.machine.position = position.ok_or(format!("`{value}` is no position"))?;
+                drive.machine.position = position.ok_or(format!("`{value}` is not a position"))?;
             }
             ("machine", _) => {
                 let position = drive.machine.position;
                 drive.machine = RawMachine { position, ..machine(rest)? };
             }
-            _ => return Err(format!("`{word}` begins no line of a transcript")),
+            _ => return Err(format!("unknown transcript line `{word}`")),
         }
         Ok(())
     }
@@ -192,7 +192,7 @@ fn unit(text: &str) -> Result<Option<u8>, String> {
 }
 
 fn number_of(text: &str) -> Result<u8, String> {
-    text.parse().map_err(|_| format!("`{text}` is no number from 0 to 255"))
+    text.parse().map_err(|_| format!("`{text}` is not a number from 0 to 255"))
 }
 
 fn bytes(text: &str) -> Result<Vec<u8>, String> {
@@ -213,7 +213,7 @@ fn checks(text: &str) -> Result<Vec<Check>, String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let pairs = words.chunks_exact(2);
     if !pairs.remainder().is_empty() || words.is_empty() {
-        return Err("look at pairs: a name and what it should be".into());
+        return Err("expected pairs of a name and its value".into());
     }
     Ok(pairs.map(|pair| Check { name: pair[0].into(), want: pair[1].into() }).collect())
 }

@@ -15,7 +15,7 @@ impl Wirer<'_> {
         let path = Path::root().key("homing");
         let Some(homing) = &self.wiring.homing else {
             if any {
-                let what = "`home_start` is wired, and there is no `homing`";
+                let what = "`home_start` is wired, but there is no `homing`";
                 self.problems
                     .push(Problem::key(Path::root().key("signals"), what).advise("add `homing`"));
             }
@@ -25,26 +25,26 @@ impl Wirer<'_> {
             |step: HomingStep| step.until.edge().is_some_and(|it| it.signal == Input::HomeSwitch);
         let looked_for = homing.methods.values().flat_map(Method::all_steps).any(looks);
         if inputs.contains(&Input::HomeSwitch) && !looked_for {
-            let what = "`home_switch` changes nothing: no homing step waits for it";
+            let what = "`home_switch` has no effect: no homing step waits for it";
             let signals = Path::root().key("signals").key("inputs");
-            self.problems.push(Problem::key(signals, what).advise("leave it out"));
+            self.problems.push(Problem::key(signals, what).advise("remove it"));
         }
         if !any {
-            let what = "`homing` changes nothing: nothing starts it";
+            let what = "`homing` has no effect: nothing starts it";
             let problem = Problem::key(path, what);
-            self.problems.push(problem.advise("wire `home_start`, or leave it out"));
+            self.problems.push(problem.advise("wire `home_start`, or remove it"));
             return;
         }
         let Some(starters) = self.starters() else { return };
         for (starter, wired) in wired.into_iter().filter(|(it, is)| starters.contains(it) != *is) {
             let name = starter.name();
             let what = match wired {
-                true => format!("no code is `{name}`, and `home_start` is wired"),
+                true => format!("no code is `{name}`, but `home_start` is wired"),
                 false => format!("`{name}` starts nothing: no such `home_start` is wired"),
             };
             let advice = match starter {
-                HomeStarter::Input => "input signal and code go together",
-                _ => "action and code go together",
+                HomeStarter::Input => "an input signal needs its code, and a code its signal",
+                _ => "an action needs its code, and a code its action",
             };
             self.problems.push(Problem::key(path.key("starter"), what).advise(advice));
         }

@@ -47,7 +47,9 @@ impl Wirer<'_> {
         let first = [method.steps.get(0), method.on.get(0)];
         match () {
             () if !turns => Some("`homing.limit` is never `turn`"),
-            () if !first.into_iter().flatten().any(meets) => Some("the first step meets no limit"),
+            () if !first.into_iter().flatten().any(meets) => {
+                Some("the first step cannot meet a limit")
+            }
             () => None,
         }
     }
@@ -67,7 +69,7 @@ impl Wirer<'_> {
 
     fn steps(&mut self, raw: &[RawHomingStep], path: &Path) -> Steps {
         if raw.len() > MOST_STEPS {
-            let what = format!("there are {} steps, and room for {MOST_STEPS}", raw.len());
+            let what = format!("{} steps, but at most {MOST_STEPS} are allowed", raw.len());
             self.problems.push(Problem::key(path.clone(), what));
         }
         let step = |(i, it): (usize, &RawHomingStep)| self.step(it, &path.index(i));
@@ -77,8 +79,8 @@ impl Wirer<'_> {
         if steps.len() == raw.len() {
             for (i, step) in steps.iter().enumerate().filter(|(i, it)| origin(it) != (*i == last)) {
                 let what = match origin(step) {
-                    true => "`origin` ends the homing, and more steps follow",
-                    false => "the last step ends with `origin`",
+                    true => "`origin` ends the homing, but more steps follow",
+                    false => "the last step must end with `origin`",
                 };
                 self.problems.push(Problem::value(path.index(i).key("then"), what));
             }
@@ -86,7 +88,7 @@ impl Wirer<'_> {
         let mut found = false;
         for (i, step) in steps.iter().enumerate() {
             if step.until == Until::SameIndex && !found {
-                let what = "no step before it waits for an index pulse";
+                let what = "no earlier step waits for an index pulse";
                 self.problems.push(Problem::value(path.index(i).key("to"), what));
             }
             found |= matches!(step.until, Until::Index(_));
@@ -116,8 +118,8 @@ impl Wirer<'_> {
             Some((name, "on")) => (name, true),
             Some((name, "off")) => (name, false),
             _ => {
-                let what = format!("`{text}` is nothing to wait for");
-                let advice = "a switch with `on` or `off`, `index`, `index after SWITCH on`, `same index`, or `collision`";
+                let what = format!("unknown target `{text}`");
+                let advice = "use a switch with `on` or `off`, `index`, `index after SWITCH on`, `same index`, or `collision`";
                 self.problems.push(Problem::value(path.clone(), what).advise(advice));
                 return None;
             }
@@ -130,7 +132,7 @@ impl Wirer<'_> {
     fn seen_switch(&mut self, name: &str, path: &Path) -> Option<Input> {
         let signal = self.switch(name, path)?;
         if !self.is_seen(signal) {
-            let what = format!("`{name}` is wired to nothing");
+            let what = format!("`{name}` is not wired");
             let advice = "add it under `signals.inputs`";
             self.problems.push(Problem::value(path.clone(), what).advise(advice));
             return None;

@@ -277,9 +277,9 @@ async fn refuses_in_clear_words() {
     let (_listener, addr) = listener();
     let taken = addr.to_string();
     for (addr, kind, words) in [
-        (&*taken, ErrorKind::AddrInUse, "another program listens there"),
-        ("5020", ErrorKind::InvalidInput, "not HOST:PORT"),
-        ("192.0.2.1:0", ErrorKind::AddrNotAvailable, "no such address"),
+        (&*taken, ErrorKind::AddrInUse, "address in use"),
+        ("5020", ErrorKind::InvalidInput, "expected HOST:PORT"),
+        ("192.0.2.1:0", ErrorKind::AddrNotAvailable, "not an address of this machine"),
     ] {
         let refused = Listener::bind(addr).unwrap_err();
         assert_eq!(refused.kind(), kind, "{refused}");

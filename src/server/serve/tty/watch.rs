@@ -37,7 +37,7 @@ impl Watch {
     /// Of `len` bytes of an answer the port has taken so many.
     pub fn sent(&mut self, line: &LineServer, taken: usize, len: usize) {
         if taken < len && !self.stalled {
-            warn!("{}: nobody reads the answers; they are lost, as on a wire", line.name);
+            warn!("{}: replies are not being read; they are lost, as on a wire", line.name);
         }
         self.stalled = taken < len;
     }
