@@ -1,13 +1,16 @@
-//! State machines of a drive, one a file. They speak words; none knows a register, a vendor or a bus.
+//! State machines of a drive, one a file. They speak the vocabulary; none knows a register, a vendor or a bus.
 
 mod chain;
+mod effect;
 mod motor;
-mod phase;
-mod servo;
+mod power;
 mod watchdog;
 
 pub use chain::{Chain, ChainRule, MOST_WAITS, Wait};
-pub use motor::{Commands, Control, HomeOrder, Jog, Motor, Ramp, Slope, Wants};
-pub use phase::{MotionReport, Phase, Replan};
-pub use servo::{Servo, Trip};
+pub use effect::{Effect, Phase, Replan};
+pub use motor::{Commands, Control, HomeOrder, Jog, Motor, MotorTimer, Ramp, Slope, Wants};
+pub use power::{
+    CommandControl, LevelControl, PowerControl, PowerDemand, PowerLevels, PowerStage, PowerState,
+    Trip,
+};
 pub use watchdog::Watchdog;

@@ -1,7 +1,7 @@
 //! What the axis is doing: it stands, moves to a position, runs, jogs, looks for its origin, stops or coasts.
 //!
 //! An order becomes a trajectory and a phase; after that nothing happens until something on the way does
-//! (`due.rs`): the trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the
+//! (`wake.rs`): the trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the
 //! order; who wants others on the way says so, and the rest is planned anew (`replan.rs`).
 //!
 //! The trajectory is what the axis is told. Where it is can be less: a hard stop holds it, and in a move, where the
@@ -17,13 +17,15 @@ mod observe;
 mod replan;
 mod suspend;
 mod timers;
+mod wake;
 
 pub use goal::{Ramp, Slope};
 pub use home::HomeOrder;
 pub use observe::Control;
 pub use suspend::Commands;
+pub use timers::MotorTimer;
 
-use super::phase::{MotionReport, Phase};
+use super::effect::{Effect, Phase};
 use crate::event::Ignored;
 use crate::motion::{CrossingDirection, Lag, Machine, State, Trajectory};
 use crate::time::{Duration, Instant};
@@ -102,8 +104,8 @@ pub struct Motor {
     /// It has told that it is too far from its command, and still is.
     deviates: bool,
     homing: Option<Box<Homing>>,
-    due: MotorTimers,
-    told: VecDeque<MotionReport>,
+    timers: MotorTimers,
+    effects: VecDeque<Effect>,
 }
 
 impl Motor {
@@ -132,8 +134,8 @@ impl Motor {
             arrived: false,
             deviates: false,
             homing: None,
-            due: MotorTimers::default(),
-            told: VecDeque::with_capacity(8),
+            timers: MotorTimers::default(),
+            effects: VecDeque::with_capacity(8),
         }
     }
 
@@ -208,8 +210,8 @@ impl Motor {
     }
 
     /// The next thing to be told.
-    pub fn poll_stage(&mut self) -> Option<MotionReport> {
-        self.told.pop_front()
+    pub fn poll_effect(&mut self) -> Option<Effect> {
+        self.effects.pop_front()
     }
 
     /// Follows the levels. To be called whenever one of them may have changed, or a motion has ended.
@@ -270,10 +272,11 @@ impl Motor {
         self.lose_origin(HomeEnd::Replaced);
         self.forward = target >= here;
         self.begin(now, trajectory, Phase::Moving);
-        self.told.push_back(MotionReport::Moves(target));
+        self.effects.push_back(Effect::MoveStarted(target));
         if self.wants.pause {
             self.paused = true;
-            self.told.push_back(MotionReport::Pauses);
+            self.look_ahead(now);
+            self.effects.push_back(Effect::MovePaused);
         }
         self.advance(now);
         Ok(())
@@ -296,7 +299,7 @@ impl Motor {
             (false, _) => {}
         }
         self.go(now, ramp, Phase::Running);
-        self.told.push_back(MotionReport::Runs(ramp.speed));
+        self.effects.push_back(Effect::RunStarted(ramp.speed));
         self.advance(now);
         Ok(())
     }
@@ -321,7 +324,7 @@ impl Motor {
             self.goal = Goal::Stop(Slope::Rate(decel), 0.0);
             let trajectory = Trajectory::stop(now, self.state(now), decel);
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(MotionReport::Stops);
+            self.effects.push_back(Effect::Stopping);
             self.advance(now);
         }
     }
@@ -395,7 +398,7 @@ impl Motor {
         let may = !self.is_held() && !self.jog_spent && !self.is_at_limit(now, forward);
         if free && may {
             self.go(now, ramp, Phase::Jogging { forward });
-            self.told.push_back(MotionReport::Jogs(ramp.speed));
+            self.effects.push_back(Effect::JogStarted(ramp.speed));
         } else if matches!(self.phase, Phase::Jogging { .. }) {
             self.brake(now);
         }
@@ -423,7 +426,7 @@ impl Motor {
             self.lose_origin(HomeEnd::Stopped);
             let trajectory = self.slow_down(now);
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(MotionReport::Stops);
+            self.effects.push_back(Effect::Stopping);
         }
     }
 
@@ -440,7 +443,7 @@ impl Motor {
             self.goal = Goal::None;
             let trajectory = Trajectory::halt(now, self.state(now));
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(MotionReport::Stops);
+            self.effects.push_back(Effect::Stopping);
         }
     }
 
@@ -449,7 +452,7 @@ impl Motor {
             self.lose_origin(HomeEnd::PowerOff);
             let rests = self.speed(now) == 0.0;
             self.run_out(now);
-            self.told.extend((!rests).then_some(MotionReport::Coasts));
+            self.effects.extend((!rests).then_some(Effect::Coasting));
             self.advance(now);
         }
     }

@@ -113,8 +113,8 @@ impl Drive {
     /// Trips again with what stands and has no alarm.
     pub(super) fn uphold_causes(&mut self) {
         let standing = self.standing_causes();
-        self.servo.set_active_causes(standing);
-        if self.servo.alarm().is_none() {
+        self.power_stage.set_active_causes(standing);
+        if self.power_stage.alarm().is_none() {
             let causes = AlarmCause::ALL.iter().filter(|cause| standing.has(**cause));
             causes.for_each(|cause| {
                 self.trip(*cause);

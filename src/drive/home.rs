@@ -3,7 +3,7 @@
 use super::Drive;
 use super::course::Course;
 use super::settings::Moment;
-use crate::behaviour::{HomeOrder, MotionReport, Slope};
+use crate::behaviour::{Effect, HomeOrder, Slope};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Choice, Finish, HomingRules};
 use crate::motion::Index;
@@ -50,7 +50,7 @@ impl Drive {
 
     /// Looks for the origin if this is the first time that the power stage is on, and a row wants that.
     pub(super) fn home_at_first_enable(&mut self) {
-        if self.never_enabled && self.servo.is_enabled() {
+        if self.never_enabled && self.power_stage.is_enabled() {
             self.never_enabled = false;
             if self.home_starter() == Some(HomeStarter::FirstEnable) {
                 self.home_by(HomeStarter::FirstEnable);
@@ -78,13 +78,13 @@ impl Drive {
     }
 
     /// Does what `stage` asks of the drive. Has that changed what is wanted of the axis?
-    pub(super) fn follow_stage(&mut self, stage: MotionReport) -> bool {
+    pub(super) fn follow_stage(&mut self, stage: Effect) -> bool {
         match stage {
-            MotionReport::Homed(origin) => {
+            Effect::HomingDone(origin) => {
                 self.finish_home(origin);
                 true
             }
-            MotionReport::Lost { why, forward, alarm } => {
+            Effect::HomingAborted { why, forward, alarm } => {
                 self.home_is_over();
                 alarm
                     && self.trip(match (why, forward) {
@@ -93,12 +93,12 @@ impl Drive {
                         (_, false) => AlarmCause::HomingLimitNeg,
                     })
             }
-            MotionReport::Deviates => self.trip(AlarmCause::PositionDeviation),
-            MotionReport::Stops | MotionReport::Limit { .. } => {
+            Effect::DeviationExceeded => self.trip(AlarmCause::PositionDeviation),
+            Effect::Stopping | Effect::LimitReached { .. } => {
                 self.take_settings(Moment::Stop);
                 false
             }
-            MotionReport::Replans(_) | MotionReport::Pauses | MotionReport::Resumes(_) => {
+            Effect::Replanned(_) | Effect::MovePaused | Effect::MoveResumed(_) => {
                 self.look_at_places();
                 false
             }

@@ -30,7 +30,7 @@ pub use issued::IssuedCommand;
 pub use setup::Setup;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, Motor, Servo, Wants, Watchdog};
+use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Wants, Watchdog};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::{Model, WireFormat};
 use crate::serial::{Mode, Settings};
@@ -62,7 +62,7 @@ pub struct Drive {
     /// Has it supply?
     powered: bool,
     device_faults: DeviceFaults,
-    servo: Servo,
+    power_stage: PowerStage,
     /// Watchdogs of the input words.
     word_watchdogs: Vec<Watchdog>,
     /// Watchdog of the master: how long it may be silent.
@@ -120,7 +120,11 @@ impl Drive {
         setup.values.iter().for_each(|(row, raw)| bank.preset(&model, *row, *raw));
         let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
         let mut drive = Self {
-            servo: Servo::power_on(now, Default::default(), false),
+            power_stage: PowerStage::power_on(
+                now,
+                Default::default(),
+                PowerControl::Levels(LevelControl::default()),
+            ),
             word_watchdogs: vec![Watchdog::default(); words],
             silence: Watchdog::default(),
             motor: Motor::standing(
@@ -259,7 +263,8 @@ impl Drive {
             return;
         }
         self.changes.push_back(Change::PoweredOff);
-        self.end_servo();
+        self.power_stage.power_off();
+        self.report_power_stage();
         self.word_watchdogs.iter_mut().chain([&mut self.silence]).for_each(Watchdog::stop);
         self.chain.end();
         self.motor.follow(now, Wants::default());
@@ -286,11 +291,12 @@ impl Drive {
         while let Some(at) = self.deadline().filter(|at| *at <= now) {
             self.now = self.now.max(at);
             if self.powered {
-                self.servo.advance(self.now, &mut |change| self.changes.push_back(change));
+                self.power_stage.advance(self.now);
+                self.report_power_stage();
             }
             self.bounce();
             // Switches first: what they are wired to has changed before anything else happens.
-            if self.motor.take_edge(self.now) {
+            if self.motor.take_switch_edge(self.now) {
                 self.gather_inputs();
             }
             self.motor.advance(self.now);
@@ -306,9 +312,10 @@ impl Drive {
 
     /// When something will happen by itself.
     pub fn deadline(&self) -> Option<Instant> {
-        let servo = self.servo.deadline().filter(|_| self.powered);
-        let (motor, chain) = (self.motor.deadline(), self.chain.deadline());
-        let ends = [self.watchdog_at(), servo, motor, chain, self.device_faults.deadline()];
+        let ready = self.power_stage.ready_at();
+        let motor = self.motor.next_timer().map(|(at, _)| at);
+        let chain = self.chain.deadline();
+        let ends = [self.watchdog_at(), ready, motor, chain, self.device_faults.deadline()];
         ends.into_iter().flatten().min()
     }
 
@@ -336,7 +343,7 @@ impl Drive {
     }
 
     fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {
-        let gate = Gate { enabled: self.servo.is_enabled() };
+        let gate = Gate { enabled: self.power_stage.is_enabled() };
         let plan = self.bank.plan_write(&self.model, span, words, gate)?;
         self.bank.commit(&self.model, &plan);
         self.note_stored(&plan);
@@ -378,10 +385,11 @@ impl Drive {
     }
 
     fn power_on(&mut self, now: Instant) {
-        self.end_servo();
+        self.power_stage.power_off();
+        self.report_power_stage();
         self.memory.power_on();
         let (servo, axis) = (self.model.wiring.servo, &self.model.wiring.axis);
-        self.servo = Servo::power_on(now, servo.ready_after, servo.enabled_at_power_on);
+        self.power_stage = PowerStage::power_on(now, servo.ready_after, self.power_control());
         self.motor = self.motor.switched_on(now, axis.coast, axis.position_gain);
         (self.home_done, self.never_enabled) = (false, true);
         self.told_not_simulated = 0;
@@ -403,17 +411,10 @@ impl Drive {
             self.changes.push_back(Change::Mode { from, to: mode });
         }
         self.gather_inputs();
-        self.servo.advance(now, &mut |change| self.changes.push_back(change));
+        self.power_stage.advance(now);
+        self.report_power_stage();
         self.update_axis();
         self.begin_explaining();
-    }
-
-    /// A power stage without supply, as good as one that is not ready yet.
-    fn end_servo(&mut self) {
-        if self.servo.is_enabled() {
-            self.changes.push_back(Change::Enabled(false));
-        }
-        self.servo = Servo::power_on(self.now, self.model.wiring.servo.ready_after, false);
     }
 
     /// The unit address that switches and parameters ask for.
@@ -456,17 +457,16 @@ impl Drive {
             return Err(Ignored::Moving);
         }
         let mut done = Ok(());
-        let tell = &mut |change| self.changes.push_back(change);
         match action {
             Action::QuickStop
             | Action::Stop
             | Action::HomeStart
             | Action::MoveStart
             | Action::RunStart => done = self.order(action, modifiers),
-            Action::Enable => done = self.servo.latch(true, tell),
-            Action::Release => done = self.servo.latch(false, tell),
-            Action::AlarmReset => done = self.servo.reset(tell),
-            Action::EncoderReset => done = self.servo.reset_of(AlarmCause::Encoder, tell),
+            Action::Enable => done = self.power_stage.order(true),
+            Action::Release => done = self.power_stage.order(false),
+            Action::AlarmReset => done = self.power_stage.reset(),
+            Action::EncoderReset => done = self.power_stage.reset_of(AlarmCause::Encoder),
             Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
                 self.zero = self.seen_position();
@@ -493,6 +493,7 @@ impl Drive {
             }
             Action::PowerCycle => self.restart = true,
         }
+        self.report_power_stage();
         self.update_axis();
         done
     }

@@ -4,7 +4,7 @@
 use super::Drive;
 use super::course::{Course, MoveRows};
 use super::settings::Moment;
-use crate::behaviour::{Commands, Control, MotionReport, Phase, Replan, Wants};
+use crate::behaviour::{Commands, Control, Effect, Phase, Replan, Wants};
 use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
@@ -94,16 +94,17 @@ impl Drive {
             }
         }
         self.home_at_first_enable();
-        if self.motor.take_edge(self.now) {
+        if self.motor.take_switch_edge(self.now) {
             self.gather_inputs();
         }
     }
 
     /// Switches an axis off that has braked for an alarm and stands. Has it?
     fn release_brake(&mut self) -> bool {
-        let stands = self.servo.is_braking() && !self.motor.is_moving();
+        let stands = self.power_stage.is_braking() && !self.motor.is_moving();
         if stands {
-            self.servo.braked(&mut |change| self.changes.push_back(change));
+            self.power_stage.braked();
+            self.report_power_stage();
         }
         stands
     }
@@ -122,11 +123,19 @@ impl Drive {
         in_force.then(|| [low, high].map(|it| self.place(it)))
     }
 
+    /// Reports what has become of the power stage.
+    pub(super) fn report_power_stage(&mut self) {
+        while let Some(effect) = self.power_stage.poll_effect() {
+            let change = self.told(effect, None);
+            self.changes.extend(change);
+        }
+    }
+
     /// Tells what the axis has told, which is about a segment where `segment` says so. Has it changed what is
     /// wanted of the axis?
     pub(super) fn tell_stages(&mut self, segment: Option<u16>) -> bool {
         let mut changed = false;
-        while let Some(stage) = self.motor.poll_stage() {
+        while let Some(stage) = self.motor.poll_effect() {
             let change = self.told(stage, segment);
             self.changes.extend(change);
             changed |= self.follow_stage(stage);
@@ -203,9 +212,9 @@ impl Drive {
     fn wants(&self) -> Wants {
         let (has, commands) = (|input| self.inputs.has(input), self.commands());
         Wants {
-            power: self.servo.is_enabled(),
+            power: self.power_stage.is_enabled(),
             // What brakes for an alarm starts nothing.
-            stop: has(Input::Stop) || self.servo.is_braking(),
+            stop: has(Input::Stop) || self.power_stage.is_braking(),
             quick_stop: has(Input::QuickStop),
             pause: has(Input::Pause),
             commands,
@@ -233,41 +242,47 @@ impl Drive {
     }
 
     /// What the axis tells, as its drive tells it.
-    fn told(&self, stage: MotionReport, segment: Option<u16>) -> Option<Change> {
+    fn told(&self, stage: Effect, segment: Option<u16>) -> Option<Change> {
         let at = |position: i64| self.wrapped(self.shown(position));
         let method = self.method;
         Some(match stage {
-            MotionReport::Moves(to) => match segment {
+            Effect::Ready => Change::Ready,
+            Effect::Enabled(on) => Change::Enabled(on),
+            Effect::AlarmRaised { cause, code } => Change::Alarm { cause, code },
+            Effect::AlarmCleared => Change::AlarmCleared,
+            Effect::MoveStarted(to) => match segment {
                 None => Change::Moves { to: at(to) },
                 Some(number) => Change::PositionSegment { number, to: at(to) },
             },
-            MotionReport::Runs(speed) => Change::Runs { mrpm: self.mrpm(speed) },
-            MotionReport::Jogs(speed) => match segment {
+            Effect::RunStarted(speed) => Change::Runs { mrpm: self.mrpm(speed) },
+            Effect::JogStarted(speed) => match segment {
                 None => Change::Jogs { mrpm: self.mrpm(speed) },
                 Some(number) => Change::VelocitySegment { number, mrpm: self.mrpm(speed) },
             },
-            MotionReport::Replans(what) => Change::Replans(self.replanned(what)),
-            MotionReport::Pauses => Change::Pauses,
-            MotionReport::Resumes(to) => Change::Resumes { to: at(to) },
-            MotionReport::Clears(counts) => Change::DeviationCleared { counts },
-            MotionReport::Stops => Change::Stops,
-            MotionReport::Coasts => Change::Coasts,
-            MotionReport::Stands(position) => Change::Stands { at: at(position) },
-            MotionReport::Limit { forward, soft } => Change::Limit { forward, soft },
-            MotionReport::Hits(position) => Change::Hits { at: at(position) },
-            MotionReport::Deviates => Change::Deviates,
-            MotionReport::Seeks(step, speed) => {
+            Effect::Replanned(what) => Change::Replans(self.replanned(what)),
+            Effect::MovePaused => Change::Pauses,
+            Effect::MoveResumed(to) => Change::Resumes { to: at(to) },
+            Effect::DeviationCleared(counts) => Change::DeviationCleared { counts },
+            Effect::Stopping => Change::Stops,
+            Effect::Coasting => Change::Coasts,
+            Effect::Stopped(position) => Change::Stands { at: at(position) },
+            Effect::LimitReached { forward, soft } => Change::Limit { forward, soft },
+            Effect::HardStopHit(position) => Change::Hits { at: at(position) },
+            Effect::DeviationExceeded => Change::Deviates,
+            Effect::HomingStepStarted(step, speed) => {
                 Change::Seeks { method, step, mrpm: self.mrpm(speed) }
             }
-            MotionReport::Finds(step, position) => Change::Finds { method, step, at: at(position) },
-            MotionReport::FindsLimit { forward, turns, at: position } => {
+            Effect::HomingStepDone(step, position) => {
+                Change::Finds { method, step, at: at(position) }
+            }
+            Effect::HomingLimit { forward, turns, at: position } => {
                 Change::FindsLimit { method, forward, turns, at: at(position) }
             }
-            MotionReport::Refines { forward } => Change::Refines { method, forward },
-            MotionReport::Refined(position) => Change::Origin { method, at: at(position) },
+            Effect::IndexSearchStarted { forward } => Change::Refines { method, forward },
+            Effect::IndexFound(position) => Change::Origin { method, at: at(position) },
             // Told once the position register says what it is to say.
-            MotionReport::Homed(_) => return None,
-            MotionReport::Lost { why, .. } => Change::HomingLost { method, why },
+            Effect::HomingDone(_) => return None,
+            Effect::HomingAborted { why, .. } => Change::HomingLost { method, why },
         })
     }
 

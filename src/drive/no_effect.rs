@@ -174,7 +174,9 @@ impl Drive {
     fn acts(&self, input: Input) -> Acts {
         let edge = |may: Result<(), Ignored>| Acts::Edge(may.err().map(|why| self.root_of(why)));
         match input {
-            Input::ServoOn => Acts::Level((!self.servo.is_enabled()).then(|| self.servo.why_off())),
+            Input::ServoOn => {
+                Acts::Level((!self.power_stage.is_enabled()).then(|| self.power_stage.why_off()))
+            }
             Input::SegmentRun if self.velocity_lasts() == Some(Lasts::Edge) => {
                 edge(self.motor.may_start(false))
             }
@@ -185,7 +187,7 @@ impl Drive {
             Input::ClearDeviation | Input::CommandInhibit => {
                 Acts::Level(self.why_not_held_back(input))
             }
-            Input::AlarmReset => Acts::Edge(self.servo.may_reset().err()),
+            Input::AlarmReset => Acts::Edge(self.power_stage.may_reset().err()),
             _ if asks_for_run(input) => Acts::Level(self.why_no_run(input)),
             _ => Acts::Other,
         }
@@ -234,8 +236,8 @@ impl Drive {
     /// The reason behind `why`: what keeps the power stage off, what an alarm stops.
     fn root_of(&self, why: Ignored) -> Ignored {
         match why {
-            Ignored::PowerOff => self.servo.why_off(),
-            Ignored::Held if self.servo.is_braking() => Ignored::Alarm,
+            Ignored::PowerOff => self.power_stage.why_off(),
+            Ignored::Held if self.power_stage.is_braking() => Ignored::Alarm,
             why => why,
         }
     }
@@ -246,7 +248,7 @@ impl Drive {
         match () {
             () if self.chain.is_under_way() => None,
             () if !self.motor.is_moving() => Some(Ignored::AlreadyStopped),
-            () if slowing && !(at_once && self.servo.is_enabled()) => Some(Ignored::Stopping),
+            () if slowing && !(at_once && self.power_stage.is_enabled()) => Some(Ignored::Stopping),
             () => None,
         }
     }

@@ -44,7 +44,7 @@ impl Drive {
             Quantity::SegmentRunning => self.segment.into(),
             Quantity::SegmentNext => self.next_segment().into(),
             Quantity::ErrorFollowing => self.deviation(),
-            Quantity::AlarmCode => self.servo.alarm().map_or(0, |trip| trip.code.into()),
+            Quantity::AlarmCode => self.power_stage.alarm().map_or(0, |trip| trip.code.into()),
             Quantity::UnitInUse => self.unit.into(),
             Quantity::UnitSwitches => self.switches.into(),
         }

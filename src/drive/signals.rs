@@ -1,6 +1,7 @@
 //! Input signals gathered from terminals, words and bits; output signals told from the state.
 
 use super::Drive;
+use crate::behaviour::PowerLevels;
 use crate::event::{Ignored, Ordered};
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
@@ -23,13 +24,17 @@ impl Drive {
         }
         self.uphold_causes();
         if risen.has(Input::AlarmReset) {
-            let done = self.servo.reset(&mut |change| self.changes.push_back(change));
+            let done = self.power_stage.reset();
+            self.report_power_stage();
             self.heed(Input::AlarmReset, done);
         }
-        let tell = &mut |change| self.changes.push_back(change);
-        self.servo.inhibit(now.has(Input::EnableInhibit), tell);
-        self.servo.want(now.has(Input::ServoOn), now.has(Input::Release), tell);
-        if before.risen_since(now).has(Input::ServoOn) && self.servo.is_latched_on() {
+        self.power_stage.set_levels(PowerLevels {
+            enable: now.has(Input::ServoOn),
+            release: now.has(Input::Release),
+            inhibit: now.has(Input::EnableInhibit),
+        });
+        self.report_power_stage();
+        if before.risen_since(now).has(Input::ServoOn) && self.power_stage.is_latched_on() {
             self.ignore(Ordered::InputOff(Input::ServoOn), Ignored::Latched);
         }
         self.select_velocity();
@@ -43,7 +48,7 @@ impl Drive {
 
     /// Tells of signals that ask for what is so already.
     fn look_at_what_is_so(&mut self, risen: Inputs) {
-        let enabled = self.servo.is_enabled();
+        let enabled = self.power_stage.is_enabled();
         let so = [
             (Input::ServoOn, enabled.then_some(Ignored::AlreadyOn)),
             (Input::Release, (!enabled).then_some(Ignored::AlreadyOff)),
@@ -63,7 +68,7 @@ impl Drive {
         if !self.powered {
             return Outputs::default();
         }
-        let enabled = self.servo.is_enabled();
+        let enabled = self.power_stage.is_enabled();
         let beyond = |forward: bool| {
             self.soft_limits().is_some_and(|[low, high]| {
                 let position = self.motor.state(self.now).position;
@@ -73,9 +78,9 @@ impl Drive {
         let user = self.model.wiring.user_outputs.map_or(0, |row| self.bank.raw(row));
         let outputs = Outputs::default()
             .with(Output::Powered, true)
-            .with(Output::Ready, self.servo.is_ready())
+            .with(Output::Ready, self.power_stage.is_ready())
             .with(Output::Enabled, enabled)
-            .with(Output::Alarm, self.servo.alarm().is_some())
+            .with(Output::Alarm, self.power_stage.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
             .with(Output::Moving, self.motor.is_moving() || self.motor.speed(self.now) != 0.0)
             .with(Output::HomeDone, self.home_done)

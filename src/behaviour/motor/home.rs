@@ -8,7 +8,7 @@ mod replan;
 
 use super::goal::{Goal, Slope};
 use super::limits::limit;
-use super::{MotionReport, Motor, Phase};
+use super::{Effect, Motor, Phase};
 use crate::event::Ignored;
 use crate::motion::{CrossingDirection, Index, IndexPulse, Machine, Move, State, Trajectory};
 use crate::time::{Duration, Instant};
@@ -225,7 +225,7 @@ impl Motor {
         let Some(homing) = &mut self.homing else { return };
         if matches!(homing.doing, HomingState::Refining { .. }) {
             homing.origin = at;
-            self.told.push_back(MotionReport::Refined(at));
+            self.effects.push_back(Effect::IndexFound(at));
             return self.home_end(now);
         }
         let Some(step) = homing.step() else { return };
@@ -233,7 +233,7 @@ impl Motor {
         if matches!(step.until, Until::Index(_)) {
             homing.mark = Some(at);
         }
-        self.told.push_back(MotionReport::Finds(step, at));
+        self.effects.push_back(Effect::HomingStepDone(step, at));
         match step.then {
             Then::Ramp => {
                 homing.at += 1;
@@ -260,7 +260,7 @@ impl Motor {
                 let origin = homing.origin;
                 self.homing = None;
                 self.arrived = true;
-                self.told.push_back(MotionReport::Homed(origin));
+                self.effects.push_back(Effect::HomingDone(origin));
                 self.stand(now);
             }
             HomingState::Seeking { .. } | HomingState::Stuck | HomingState::Refining { .. } => {}
@@ -282,7 +282,7 @@ impl Motor {
         if let Some(homing) = self.homing.take() {
             self.goal = Goal::Stop(Slope::Rate(homing.order.slope()), 0.0);
             let forward = homing.heading().unwrap_or(self.forward);
-            self.told.push_back(MotionReport::Lost { why, forward, alarm });
+            self.effects.push_back(Effect::HomingAborted { why, forward, alarm });
         }
     }
 
@@ -299,7 +299,7 @@ impl Motor {
         let speed = homing.speed();
         let source = homing.order.source;
         let speed = if step.forward { speed } else { -speed };
-        self.told.push_back(MotionReport::Seeks(step, speed));
+        self.effects.push_back(Effect::HomingStepStarted(step, speed));
         self.home_go(now, self.state(now), speed);
         let seen = self.home_switches(now, source);
         if let Some(homing) = &mut self.homing {
@@ -346,7 +346,7 @@ impl Motor {
             (homing.steps, homing.at, homing.fresh) = (homing.order.method.at_limit, 0, false);
         }
         homing.doing = if turns { HomingState::Braking } else { HomingState::Stuck };
-        self.told.push_back(MotionReport::FindsLimit { forward, turns, at });
+        self.effects.push_back(Effect::HomingLimit { forward, turns, at });
         self.home_brake(now);
     }
 
@@ -363,7 +363,7 @@ impl Motor {
         };
         homing.doing = HomingState::Refining { forward };
         let (from, slow) = (State::at_rest(homing.origin as f64), homing.order.slow);
-        self.told.push_back(MotionReport::Refines { forward });
+        self.effects.push_back(Effect::IndexSearchStarted { forward });
         self.home_go(now, from, if forward { slow } else { -slow });
         self.home_limit(now);
     }

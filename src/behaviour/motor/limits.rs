@@ -2,7 +2,7 @@
 //! of them everything does.
 
 use super::goal::Goal;
-use super::{MotionReport, Motor, Phase};
+use super::{Effect, Motor, Phase};
 use crate::event::Ignored;
 use crate::motion::Trajectory;
 use crate::time::Instant;
@@ -43,7 +43,7 @@ impl Motor {
             return;
         }
         let soft = !self.wants.switches.has(limit(self.forward));
-        self.told.push_back(MotionReport::Limit { forward: self.forward, soft });
+        self.effects.push_back(Effect::LimitReached { forward: self.forward, soft });
         self.stop_at_limit(now);
     }
 

@@ -3,7 +3,7 @@
 
 use super::goal::{Goal, Ramp, Slope};
 use super::{Motor, Phase};
-use crate::behaviour::phase::{MotionReport, Replan};
+use crate::behaviour::effect::{Effect, Replan};
 use crate::motion::Trajectory;
 use crate::time::Instant;
 
@@ -65,7 +65,7 @@ impl Motor {
     }
 
     fn tell_difference(&mut self, before: Goal, goal: Goal) {
-        let mut tell = |what| self.told.push_back(MotionReport::Replans(what));
+        let mut tell = |what| self.effects.push_back(Effect::Replanned(what));
         if let (Goal::Position(from, _), Goal::Position(to, _)) = (before, goal)
             && from != to
         {

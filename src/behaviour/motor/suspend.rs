@@ -2,7 +2,7 @@
 
 use super::goal::Goal;
 use super::{Motor, Phase};
-use crate::behaviour::phase::MotionReport;
+use crate::behaviour::effect::Effect;
 use crate::motion::{State, Trajectory};
 use crate::time::Instant;
 
@@ -47,7 +47,7 @@ impl Motor {
         self.paused = true;
         let trajectory = self.held_back(now, self.trajectory.state(now));
         self.go_on(now, trajectory);
-        self.told.push_back(MotionReport::Pauses);
+        self.effects.push_back(Effect::MovePaused);
     }
 
     /// The trajectory of a move that is held back, from a state of its command.
@@ -64,7 +64,7 @@ impl Motor {
         let from = self.trajectory.state(now);
         let trajectory = ramp.in_motion(from).reach(now, from, target);
         self.go_on(now, trajectory);
-        self.told.push_back(MotionReport::Resumes(target));
+        self.effects.push_back(Effect::MoveResumed(target));
         self.obey_limits(now);
     }
 
@@ -74,7 +74,7 @@ impl Motor {
             self.goal = Goal::None;
             let trajectory = Trajectory::halt(now, self.state(now));
             self.begin(now, trajectory, Phase::Stopping);
-            self.told.push_back(MotionReport::Stops);
+            self.effects.push_back(Effect::Stopping);
         }
     }
 
@@ -88,7 +88,7 @@ impl Motor {
             Phase::Moving | Phase::Stopping if moves || self.lag.makes_up() => {
                 self.goal = Goal::None;
                 self.begin(now, Trajectory::rest(now, here), Phase::Stopping);
-                self.told.extend(moves.then_some(MotionReport::Stops));
+                self.effects.extend(moves.then_some(Effect::Stopping));
             }
             // Less is a rounding error, or what is left of a lag that decays.
             _ if behind.abs() < LEAST => return,
@@ -104,6 +104,6 @@ impl Motor {
             self.look_at_switches(now);
         }
         let counts = behind.round() as i64;
-        self.told.extend((counts != 0).then_some(MotionReport::Clears(counts)));
+        self.effects.extend((counts != 0).then_some(Effect::DeviationCleared(counts)));
     }
 }

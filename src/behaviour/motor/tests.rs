@@ -1,7 +1,7 @@
 //! What holds for an axis whatever it is told.
 
 use super::*;
-use crate::behaviour::phase::Replan;
+use crate::behaviour::effect::Replan;
 use crate::motion::Switch;
 use crate::vocabulary::Input;
 use proptest::prelude::*;
@@ -72,7 +72,7 @@ struct MotorBench {
     motor: Motor,
     wants: Wants,
     now: Instant,
-    told: Vec<(Instant, MotionReport)>,
+    told: Vec<(Instant, Effect)>,
     /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
     jump: f64,
     tuned: usize,
@@ -115,21 +115,21 @@ impl MotorBench {
         self.motor.follow(self.now, Wants { switches, ..self.wants });
         self.wants.jog.iter_mut().for_each(|jog| jog.takes_over = false);
         self.hear();
-        if self.motor.take_edge(self.now) {
+        if self.motor.take_switch_edge(self.now) {
             self.follow();
         }
     }
 
     fn hear(&mut self) {
-        while let Some(stage) = self.motor.poll_stage() {
+        while let Some(stage) = self.motor.poll_effect() {
             self.told.push((self.now, stage));
         }
     }
 
     fn advance_to(&mut self, now: Instant) {
-        while let Some(at) = self.motor.deadline().filter(|at| *at <= now) {
+        while let Some((at, _)) = self.motor.next_timer().filter(|(at, _)| *at <= now) {
             self.now = at;
-            if self.motor.take_edge(at) {
+            if self.motor.take_switch_edge(at) {
                 self.follow();
             }
             self.motor.advance(at);
@@ -259,7 +259,7 @@ proptest! {
             if let Some([low, high]) = machine.hard_stop {
                 worst = worst.max(low as f64 - state.position).max(state.position - high as f64);
             }
-            if bench.motor.deadline().is_some_and(|at| at <= bench.now) {
+            if bench.motor.next_timer().is_some_and(|(at, _)| at <= bench.now) {
                 worst = f64::INFINITY;
             }
             if let Some((at, was)) = last {
@@ -318,7 +318,7 @@ fn settings_that_change_are_followed() {
     bench.advance_to(Instant::from_millis(1000));
     assert_eq!(bench.motor.state(bench.now).speed, 2000.0);
     assert_eq!((bench.tuned, bench.jump), (1, 0.0));
-    assert!(bench.told.iter().any(|(_, it)| *it == MotionReport::Replans(Replan::Speed(2000.0))));
+    assert!(bench.told.iter().any(|(_, it)| *it == Effect::Replanned(Replan::Speed(2000.0))));
 }
 
 #[test]
@@ -352,7 +352,7 @@ fn coasts_only_while_it_moves() {
         let held = bench.motor.phase() == Phase::Moving;
         bench.wants.power = false;
         bench.follow();
-        (held, bench.told.iter().any(|(_, it)| *it == MotionReport::Coasts))
+        (held, bench.told.iter().any(|(_, it)| *it == Effect::Coasting))
     };
     assert_eq!(coasts(false, 310), (true, true));
     assert_eq!(coasts(true, 2000), (true, false));

@@ -1,182 +1,155 @@
-//! What will happen to an axis by itself, and when: solved for whenever it gets another trajectory.
+//! What will happen to an axis by itself, and when: a table of deadlines, each with a name.
+//!
+//! They are solved for whenever the axis gets another trajectory, or what it has to look out for changes. The earliest one
+//! comes first; those of one instant come in the order in which [`MotorTimer`] lists them.
 
-use super::{MotionReport, Motor, Phase};
-use crate::motion::{CrossingDirection, Hit, IndexPulse, Switch};
+use crate::motion::{Hit, IndexPulse};
 use crate::time::Instant;
 
-/// What will happen to an axis that is left alone.
+/// What an axis waits for. Of several at one instant the first one here comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MotorTimer {
+    /// A switch of the machine changes. It comes before all others: what it is wired to has changed when they happen.
+    SwitchEdge,
+    /// The axis runs against a hard stop.
+    HardStop,
+    /// The axis comes off a hard stop.
+    HardStopLeft,
+    /// The axis has been pressed against a hard stop as far as a homing step waits for.
+    Collision,
+    /// The axis passes an index mark that a homing waits for.
+    IndexPulse,
+    /// The axis gets to be farther from its command than is allowed.
+    DeviationLimit,
+    /// The axis gets beyond a soft limit.
+    SoftLimit,
+    /// The command of a move is at its target.
+    TargetReached,
+    /// The command of a stop is at rest, be it one within a homing.
+    Standstill,
+    /// The time for a homing is over.
+    HomingTimeLimit,
+}
+
+impl MotorTimer {
+    /// All of them, in their order.
+    pub const ALL: [Self; 10] = [
+        Self::SwitchEdge,
+        Self::HardStop,
+        Self::HardStopLeft,
+        Self::Collision,
+        Self::IndexPulse,
+        Self::DeviationLimit,
+        Self::SoftLimit,
+        Self::TargetReached,
+        Self::Standstill,
+        Self::HomingTimeLimit,
+    ];
+}
+
+/// The deadlines of an axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct MotorTimers {
-    /// A switch changes.
-    edge: Option<Instant>,
-    /// It runs against a hard stop.
-    hit: Option<Hit>,
-    /// It comes off a hard stop.
-    leave: Option<Instant>,
-    /// It has been pressed against a hard stop as far as a homing step waits for.
-    collision: Option<Instant>,
-    /// It should be farther from where it is than is allowed.
-    deviation: Option<Instant>,
-    /// It gets beyond a soft limit.
-    soft: Option<Instant>,
-    /// It passes an index mark that a homing step waits for.
-    index: Option<IndexPulse>,
-    /// Its trajectory is over.
-    end: Option<Instant>,
-    /// The time for a homing is over.
-    time: Option<Instant>,
+    at: [Option<Instant>; MotorTimer::ALL.len()],
+    /// Where the axis is to run against a hard stop.
+    hit_at: i64,
+    /// The index mark that is to be passed.
+    mark: i64,
 }
 
-impl Motor {
-    /// When something happens to it by itself.
-    pub fn deadline(&self) -> Option<Instant> {
-        let MotorTimers { edge, hit, leave, collision, deviation, soft, index, end, time } =
-            &self.due;
-        let (hit, index) = (hit.map(|it| it.at), index.map(|it| it.at));
-        let all = [*edge, hit, *leave, *collision, *deviation, *soft, index, *end, *time];
-        all.into_iter().flatten().min()
+impl MotorTimers {
+    /// Sets a deadline, or stops it.
+    pub(super) fn set(&mut self, timer: MotorTimer, at: Option<Instant>) {
+        self.at[timer as usize] = at;
     }
 
-    /// Has a switch of the machine changed up to `now`? Asked once for each time; whoever knows what the
-    /// switches are wired to looks at them then, and before [`Motor::advance`].
-    pub fn take_edge(&mut self, now: Instant) -> bool {
-        let due = take(&mut self.due.edge, now);
-        if due {
-            self.due.edge = self.next_edge(now);
-        }
-        due
+    pub(super) fn set_hard_stop(&mut self, hit: Option<Hit>) {
+        self.set(MotorTimer::HardStop, hit.map(|it| it.at));
+        self.hit_at = hit.map_or(0, |it| it.position);
     }
 
-    /// Lets time pass up to `now`, which is not later than the deadline.
-    pub fn advance(&mut self, now: Instant) {
-        while self.happen(now) {}
+    pub(super) fn set_index_pulse(&mut self, pulse: Option<IndexPulse>) {
+        self.set(MotorTimer::IndexPulse, pulse.map(|it| it.at));
+        self.mark = pulse.map_or(0, |it| it.mark);
     }
 
-    /// Finds out again what lies ahead.
-    pub(super) fn look_ahead(&mut self, now: Instant) {
-        self.deviates &= self.is_deviating(now);
-        let wait = self.homing.as_ref().map(|it| it.waits_for()).unwrap_or_default();
-        self.due = MotorTimers {
-            edge: self.next_edge(now),
-            hit: self.machine.next_hit(&self.trajectory, now),
-            leave: wait.limits_by_stop.then(|| self.next_leave(now)).flatten(),
-            collision: wait.collision.and_then(|counts| self.pressed_at(counts as f64, now)),
-            deviation: self.wants.deviation.and_then(|most| self.deviates_at(most, now)),
-            soft: self.wants.soft_limits.and_then(|[low, high]| match self.forward {
-                true => self.trajectory.crossing(beyond(high), CrossingDirection::Rising, now),
-                false => self.trajectory.crossing(low as f64, CrossingDirection::Falling, now),
-            }),
-            index: wait.index.and_then(|index| self.next_index(now, index)),
-            // A run at a speed that has become 0 waits for another, and a move that is held back for its level.
-            end: self
-                .trajectory
-                .end()
-                .filter(|_| self.is_moving() && self.phase != Phase::Running && !self.paused),
-            time: wait.until,
-        };
+    /// The count at which the axis runs against a hard stop, where that timer is set or has just expired.
+    pub(super) fn hit_at(&self) -> i64 {
+        self.hit_at
     }
 
-    /// The axis is elsewhere than its command was: who knows where the switches lie.
-    pub(super) fn look_at_switches(&mut self, now: Instant) {
-        self.due.edge = Some(now);
+    /// The index mark that is passed, where that timer is set or has just expired.
+    pub(super) fn mark(&self) -> i64 {
+        self.mark
     }
 
-    /// The first thing that is due happens. Was there any?
-    fn happen(&mut self, now: Instant) -> bool {
-        let due = &mut self.due;
-        if let Some(hit) = due.hit.take_if(|it| it.at <= now) {
-            self.told.push_back(MotionReport::Hits(hit.position));
-            self.home_look(now);
-        } else if take(&mut due.leave, now) {
-            self.home_look(now);
-        } else if take(&mut due.collision, now) {
-            self.home_found(now, self.position(now));
-        } else if let Some(pulse) = due.index.take_if(|it| it.at <= now) {
-            self.home_found(now, pulse.mark);
-        } else if take(&mut due.deviation, now) {
-            self.deviates = true;
-            self.told.push_back(MotionReport::Deviates);
-        } else if take(&mut due.soft, now) {
-            self.obey_limits(now);
-        } else if take(&mut due.end, now) {
-            self.end(now);
-        } else if take(&mut due.time, now) {
-            self.home_late(now);
-        } else {
-            return false;
-        }
-        true
+    /// The next deadline.
+    pub(super) fn next(&self) -> Option<(Instant, MotorTimer)> {
+        self.set_ones().min()
     }
 
-    fn end(&mut self, now: Instant) {
-        if self.is_homing() {
-            return self.home_stands(now);
-        }
-        // A move that is held back is not over.
-        if self.paused {
-            return;
-        }
-        self.arrived = self.phase == Phase::Moving;
-        self.stand(now);
+    /// Stops `timer` if it has expired by `now`. Has it?
+    pub(super) fn take(&mut self, timer: MotorTimer, now: Instant) -> bool {
+        self.at[timer as usize].take_if(|at| *at <= now).is_some()
     }
 
-    /// Nothing is under way any more.
-    pub(super) fn stand(&mut self, now: Instant) {
-        self.phase = Phase::Standing;
-        self.look_ahead(now);
-        // Where it is to stand: it may still be on its last counts.
-        self.told.push_back(MotionReport::Stands(self.commanded(now)));
+    /// Stops the first one that has expired by `now`, but for switches, which are not the axis's to look at.
+    pub(super) fn take_expired(&mut self, now: Instant) -> Option<MotorTimer> {
+        let others = self.set_ones().filter(|(_, timer)| *timer != MotorTimer::SwitchEdge);
+        let (_, timer) = others.min().filter(|(at, _)| *at <= now)?;
+        self.set(timer, None);
+        Some(timer)
     }
 
-    fn next_edge(&self, now: Instant) -> Option<Instant> {
-        let switches = [Switch::Home, Switch::NegativeLimit, Switch::PositiveLimit];
-        let edge = |switch| self.machine.next_edge(switch, &self.trajectory, now).map(|it| it.at);
-        switches.into_iter().filter_map(edge).min()
-    }
-
-    /// When the axis gets to be more than `most` counts from its command: a hard stop holds it, or it is too slow.
-    fn deviates_at(&self, most: f64, now: Instant) -> Option<Instant> {
-        if self.deviates || !self.wants.power {
-            return None;
-        }
-        if self.is_deviating(now) {
-            return Some(now);
-        }
-        let late = self.lag.exceeds_at(&self.trajectory, most, now);
-        [late, self.pressed_at(most, now)].into_iter().flatten().min()
-    }
-
-    fn is_deviating(&self, now: Instant) -> bool {
-        self.wants.deviation.is_some_and(|most| self.deviation(now).abs() > most)
-    }
-
-    /// When the trajectory gets `counts` beyond the hard stop that holds the axis.
-    fn pressed_at(&self, counts: f64, now: Instant) -> Option<Instant> {
-        let [low, high] = self.machine.hard_stop?;
-        let (low, high) = (low as f64 - counts, (high as f64 + counts).next_up());
-        let position = self.trajectory.state(now).position;
-        if position < low || position >= high {
-            return Some(now);
-        }
-        let rising = self.trajectory.crossing(high, CrossingDirection::Rising, now);
-        let falling = self.trajectory.crossing(low, CrossingDirection::Falling, now);
-        [rising, falling].into_iter().flatten().min()
-    }
-
-    fn next_leave(&self, now: Instant) -> Option<Instant> {
-        let [low, high] = self.machine.hard_stop?;
-        let falling = self.trajectory.crossing(high as f64, CrossingDirection::Falling, now);
-        let rising = self.trajectory.crossing(beyond(low), CrossingDirection::Rising, now);
-        [rising, falling].into_iter().flatten().min()
+    fn set_ones(&self) -> impl Iterator<Item = (Instant, MotorTimer)> {
+        self.at.iter().zip(MotorTimer::ALL).filter_map(|(at, timer)| at.map(|at| (at, timer)))
     }
 }
 
-/// The first position that is more than `mark`.
-fn beyond(mark: i64) -> f64 {
-    (mark as f64).next_up()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Is `due` over at `now`? It is no more then.
-fn take(due: &mut Option<Instant>, now: Instant) -> bool {
-    due.take_if(|at| *at <= now).is_some()
+    fn ms(ms: u64) -> Instant {
+        Instant::from_millis(ms)
+    }
+
+    #[test]
+    fn each_has_its_place_in_the_table() {
+        for (i, timer) in MotorTimer::ALL.into_iter().enumerate() {
+            assert_eq!(timer as usize, i, "{timer:?}");
+        }
+        assert!(MotorTimer::ALL.is_sorted());
+    }
+
+    #[test]
+    fn the_earliest_comes_first() {
+        let mut timers = MotorTimers::default();
+        assert_eq!(timers.next(), None);
+        timers.set(MotorTimer::SoftLimit, Some(ms(20)));
+        timers.set(MotorTimer::Standstill, Some(ms(10)));
+        assert_eq!(timers.next(), Some((ms(10), MotorTimer::Standstill)));
+        assert_eq!(timers.take_expired(ms(9)), None);
+        assert_eq!(timers.take_expired(ms(30)), Some(MotorTimer::Standstill));
+        assert_eq!(timers.take_expired(ms(30)), Some(MotorTimer::SoftLimit));
+        assert_eq!((timers.take_expired(ms(30)), timers.next()), (None, None));
+    }
+
+    #[test]
+    fn those_of_one_instant_come_in_the_order_of_their_names() {
+        let mut timers = MotorTimers::default();
+        for timer in MotorTimer::ALL.into_iter().rev() {
+            timers.set(timer, Some(ms(5)));
+        }
+        assert_eq!(timers.next(), Some((ms(5), MotorTimer::SwitchEdge)));
+        let order: Vec<_> = std::iter::from_fn(|| timers.take_expired(ms(5))).collect();
+        let all = "HardStop, HardStopLeft, Collision, IndexPulse, DeviationLimit, SoftLimit, \
+                   TargetReached, Standstill, HomingTimeLimit";
+        let names: Vec<_> = order.iter().map(|timer| format!("{timer:?}")).collect();
+        assert_eq!(names.join(", "), all);
+        // Switches are the drive's to look at.
+        assert_eq!(timers.next(), Some((ms(5), MotorTimer::SwitchEdge)));
+        assert!(timers.take(MotorTimer::SwitchEdge, ms(5)));
+        assert_eq!(timers.next(), None);
+    }
 }

@@ -1,8 +1,8 @@
 //! A homing under way that goes by another setting from now on.
 
 use super::{HomeOrder, HomingState};
+use crate::behaviour::effect::{Effect, Replan};
 use crate::behaviour::motor::Motor;
-use crate::behaviour::phase::{MotionReport, Replan};
 use crate::motion::Trajectory;
 use crate::time::Instant;
 
@@ -57,6 +57,6 @@ impl Motor {
         if before.time_limit != order.time_limit {
             told.push(Replan::TimeLimit(order.time_limit));
         }
-        self.told.extend(told.into_iter().map(MotionReport::Replans));
+        self.effects.extend(told.into_iter().map(Effect::Replanned));
     }
 }

@@ -1,7 +1,7 @@
-//! What an axis is doing, and what it tells about it.
+//! What the state machines of a drive report: one kind of value from the power stage and the axis alike.
 
 use crate::time::Duration;
-use crate::vocabulary::{HomeEnd, HomingStep};
+use crate::vocabulary::{AlarmCause, HomeEnd, HomingStep};
 
 /// What an axis is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,64 +46,80 @@ pub enum Replan {
     TimeLimit(Option<Duration>),
 }
 
-/// A new phase, as it is told: machine counts, counts per second.
+/// What has happened to the power stage or the axis, for the drive to act on and to report: machine counts, counts per
+/// second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum MotionReport {
-    /// It goes to this position.
-    Moves(i64),
-    /// It goes at this speed by order.
-    Runs(f64),
-    /// It goes at this speed while a level asks for it.
-    Jogs(f64),
-    /// It goes by another setting from now on.
-    Replans(Replan),
-    /// A level holds its move back: it slows down to a standstill.
-    Pauses,
+pub enum Effect {
+    /// Initialising is over.
+    Ready,
+    /// The power stage is on from now on, or off.
+    Enabled(bool),
+    /// The first alarm since there was none.
+    AlarmRaised {
+        /// Why.
+        cause: AlarmCause,
+        /// The vendor's number.
+        code: u16,
+    },
+    /// There is no alarm any more.
+    AlarmCleared,
+
+    /// The axis starts a move to this position.
+    MoveStarted(i64),
+    /// The axis starts to run at this speed, by order.
+    RunStarted(f64),
+    /// The axis starts to run at this speed, while a level asks for it.
+    JogStarted(f64),
+    /// The motion under way goes by another setting from now on.
+    Replanned(Replan),
+    /// A level holds the move back: the axis slows down to a standstill.
+    MovePaused,
     /// The move goes on to this position.
-    Resumes(i64),
-    /// It gives up so many counts that it was behind its command.
-    Clears(i64),
-    /// It slows down.
-    Stops,
-    /// It runs out without power.
-    Coasts,
-    /// It stands at this position.
-    Stands(i64),
+    MoveResumed(i64),
+    /// The axis gives up so many counts that it was behind its command.
+    DeviationCleared(i64),
+    /// The axis slows down.
+    Stopping,
+    /// The axis coasts without power.
+    Coasting,
+    /// The axis has stopped at this position.
+    Stopped(i64),
     /// A limit ends the motion.
-    Limit {
+    LimitReached {
         /// The positive one?
         forward: bool,
         /// One that the drive keeps by itself, without a switch?
         soft: bool,
     },
-    /// It runs against a hard stop at this position.
-    Hits(i64),
-    /// It should be farther from where it is than is allowed.
-    Deviates,
-    /// It takes a homing step, at this speed.
-    Seeks(HomingStep, f64),
+    /// The axis runs against a hard stop at this position.
+    HardStopHit(i64),
+    /// The axis is farther from its command than is allowed.
+    DeviationExceeded,
+
+    /// A homing step begins, at this speed.
+    HomingStepStarted(HomingStep, f64),
     /// What a homing step waited for has come at this position.
-    Finds(HomingStep, i64),
-    /// It has come to a limit instead.
-    FindsLimit {
+    HomingStepDone(HomingStep, i64),
+    /// A homing has come to a limit instead.
+    HomingLimit {
         /// The positive one?
         forward: bool,
-        /// Does it go on from there?
+        /// Does it go on from there, the other way?
         turns: bool,
         /// Where.
         at: i64,
     },
-    /// It looks for the index pulse that refines its origin.
-    Refines {
+    /// A homing looks for the index pulse that refines its origin.
+    IndexSearchStarted {
         /// In the positive direction?
         forward: bool,
     },
     /// The index pulse that refines the origin has come at this position.
-    Refined(i64),
+    IndexFound(i64),
     /// The homing is over: this is the origin.
-    Homed(i64),
+    HomingDone(i64),
     /// The homing is over without an origin.
-    Lost {
+    HomingAborted {
         /// Why.
         why: HomeEnd,
         /// In which direction it went.
