@@ -56,7 +56,7 @@ fn each_device_fault_as_json() {
     rig.command(Command::Power { drive: FIRST, on: false }).expect("it has power");
     let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
     let told: Vec<Value> = told.collect();
-    let bounces = told.iter().find(|it| it["event"] == "bounces").expect("told");
+    let bounces = told.iter().find(|it| it["event"] == "bouncing").expect("told");
     assert_eq!(
         (&bounces["terminal"], &bounces["times"], &bounces["every_ms"]),
         (&json!("X2"), &json!(3), &json!(5.0))

@@ -55,7 +55,7 @@ fn steps_come_one_after_the_other() {
     let want: [&[&str]; 6] =
         [&["0.000"], &["2.000"], &["2.000"], &["3.500"], &["3.500", "3.600", "3.700"], &["3.700"]];
     assert_eq!(times, want, "{}", rig.log());
-    assert!(rig.log().contains("sees its position frozen"));
+    assert!(rig.log().contains("device fault on: position feedback frozen"));
 }
 
 #[test]
@@ -197,11 +197,11 @@ fn what_does_not_come_has_failed() {
 fn each_order_does_something() {
     for (order, says) in [
         ("terminal X0 on", "terminal X0 on"),
-        ("stick X0 on", "terminal X0 sticks"),
+        ("stick X0 on", "device fault on: terminal X0 stuck"),
         ("bounce X0 1 5ms", "terminal X0 off"),
         ("raise over_voltage", "alarm 2"),
-        ("hold over_voltage on", "suffers from now on"),
-        ("block on", "is blocked"),
+        ("hold over_voltage on", "device fault on"),
+        ("block on", "axis blocked"),
         ("encoder off", "alarm 4"),
         ("freeze on", "frozen"),
         ("power off", "power off"),
@@ -243,7 +243,7 @@ fn steps_as_json() {
     let rig = play("steps: [{name: a step, expect: [{signal: alarm, is: on}]}]");
     let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
     let told: Vec<_> = told.filter(|it| it["event"] == "step").collect();
-    assert_eq!((&told[0]["step"], &told[0]["outcome"]), (&json!("a step"), &json!("begins")));
+    assert_eq!((&told[0]["step"], &told[0]["outcome"]), (&json!("a step"), &json!("started")));
     assert_eq!(told[1]["outcome"], "failed");
     assert_eq!(told[1]["why"], "alarm of unit 1 is off, not on");
 }

@@ -253,7 +253,7 @@ fn a_worn_row_is_told_at_ten_and_at_a_hundred_thousand() {
         told(&rig)
     };
     let says = |count: u32| {
-        vec![format!("unit 1 wears out its memory: P03.04 jog speed stored {count} times")]
+        vec![format!("unit 1 excessive EEPROM writes: P03.04 jog speed stored {count} times")]
     };
     assert_eq!(worn(9_998), [""; 0]);
     assert_eq!(worn(9_999), says(10_000));
@@ -274,7 +274,7 @@ fn a_master_that_stores_in_its_cycle_is_told_of_once() {
     cycle(&mut rig, Duration::from_secs(1));
     assert_eq!(told(&rig), [""; 0]);
     cycle(&mut rig, Duration::from_millis(500));
-    let says = "unit 1 wears out its memory: P03.04 jog speed stored 100 times within 60 s";
+    let says = "unit 1 excessive EEPROM writes: P03.04 jog speed stored 100 times within 60 s";
     assert_eq!(told(&rig), [says]);
     power_cycle(&mut rig);
     cycle(&mut rig, Duration::from_millis(500));
@@ -292,7 +292,7 @@ fn storing_all_in_a_cycle_is_told_too() {
     (0..100).for_each(|_| assert!(!rig.ask("01 06 00 2D 00 42").is_empty()));
     assert_eq!(
         told(&rig),
-        ["unit 1 wears out its memory: all parameters stored 100 times within 60 s"]
+        ["unit 1 excessive EEPROM writes: all parameters stored 100 times within 60 s"]
     );
     let last = rig.events().last().expect("an event").what;
     let within = Some(Duration::from_secs(60));
@@ -306,7 +306,7 @@ fn wear_for_programs() {
     let mut rig = servo(&DeviceSpec::default());
     (0..100).for_each(|_| assert!(!rig.ask(STORE).is_empty()));
     let object = drivemu::log::json::object(rig.events().last().expect("one"), "line", rig.bus());
-    assert_eq!(object["event"], "wear");
+    assert_eq!(object["event"], "excessive_writes");
     assert_eq!((&object["row"], &object["writes"]), (&"P03.04".into(), &100.into()));
     assert_eq!(object["within_s"], 60);
 }
@@ -341,6 +341,6 @@ fn power_cycle(rig: &mut Rig) {
 /// Lines of the log about wear, without their times.
 fn told(rig: &Rig) -> Vec<String> {
     let log = rig.log();
-    let wear = log.lines().filter(|line| line.contains("wears out"));
+    let wear = log.lines().filter(|line| line.contains("excessive EEPROM"));
     wear.filter_map(|line| Some(line.split_once(' ')?.1.to_owned())).collect()
 }

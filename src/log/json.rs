@@ -44,14 +44,14 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
         }
         What::BroadcastRead { request } => ("broadcast", json!({"request": to_hex(request)})),
         What::Foreign { unit, pdu, answer } => {
-            ("foreign", json!({"unit": unit, "pdu": to_hex(pdu), "answer": answer}))
+            ("foreign", json!({"unit": unit, "pdu": to_hex(pdu), "reply": answer}))
         }
         What::BadCrc { frame, crc, answered } => (
             "bad_crc",
             json!({
                 "frame": to_hex(frame),
                 "got": to_hex(&crc.got.to_le_bytes()),
-                "want": to_hex(&crc.want.to_le_bytes()),
+                "expected": to_hex(&crc.want.to_le_bytes()),
                 "exception": answered.map(|(_, code)| code),
             }),
         ),
@@ -60,9 +60,9 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             ("bad_ascii", json!({"characters": characters, "why": why::ascii(*why)}))
         }
         What::Noise { head, len, why } => {
-            ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why)}))
+            ("noise", json!({"bytes": to_hex(head), "length": len, "why": why::noise(*why, *len)}))
         }
-        What::Moved(mode) => ("line_moved", json!({"mode": mode.to_string()})),
+        What::Moved(mode) => ("line_settings", json!({"mode": mode.to_string()})),
         What::Port { port, understood } => (
             "port_settings",
             json!({
@@ -70,7 +70,7 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
                 "stop_bits": port.stop_bits,
                 "line": port.line.to_string(),
                 "fits": port.fits(),
-                "heard": understood,
+                "passes": understood,
             }),
         ),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
@@ -83,7 +83,7 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
         What::Step(id) => {
             let remark = bus.remark(*id);
             let outcome = match remark.outcome {
-                Outcome::Begins => "begins",
+                Outcome::Begins => "started",
                 Outcome::Passed => "passed",
                 Outcome::Failed => "failed",
             };
@@ -104,7 +104,7 @@ fn transaction(drive: &Drive, it: &Transaction) -> (&'static str, Value) {
     let mut fields = json!({
         "unit": it.unit,
         "request": to_hex(&it.request),
-        "answer": to_hex(&it.answer),
+        "reply": to_hex(&it.answer),
     });
     let (kind, items) = match rows::request(drive, &it.request) {
         rows::DecodedRequest::Read(span) if it.refusal.is_none() => {
@@ -193,7 +193,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         Change::Wear { row, writes, within } => {
             let row = row.map(|row| &drive.model().map.row(row).id);
             let within_s = within.map(|within| within.as_secs());
-            ("wear", json!({"row": row, "writes": writes, "within_s": within_s}))
+            ("excessive_writes", json!({"row": row, "writes": writes, "within_s": within_s}))
         }
         Change::FactoryRestored => ("factory_restored", json!({})),
         Change::Unit { from, to } => ("unit_changed", json!({"from": from, "to": to})),
@@ -201,9 +201,9 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             let text = |mode: &Option<crate::serial::Mode>| mode.map(|mode| mode.to_string());
             ("mode_changed", json!({"from": text(from), "to": text(to)}))
         }
-        Change::Moves { to } => ("moves", json!({"to": to})),
-        Change::Runs { mrpm } => ("runs", json!({"rpm": text::rpm(*mrpm)})),
-        Change::Jogs { mrpm } => ("jogs", json!({"rpm": text::rpm(*mrpm)})),
+        Change::Moves { to } => ("moving", json!({"to": to})),
+        Change::Runs { mrpm } => ("running", json!({"rpm": text::rpm(*mrpm)})),
+        Change::Jogs { mrpm } => ("jogging", json!({"rpm": text::rpm(*mrpm)})),
         Change::PositionSegment { number, to } => {
             ("position_segment", json!({"segment": number, "to": to}))
         }
@@ -219,37 +219,38 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
             ("chain_ended", json!({"segment": at, "reason": reason, "why": why}))
         }
         Change::Replans(what) => ("replanned", replanned(what)),
-        Change::Pauses => ("pauses", json!({})),
-        Change::Resumes { to } => ("resumes", json!({"to": to})),
+        Change::Pauses => ("pausing", json!({})),
+        Change::Resumes { to } => ("resumed", json!({"to": to})),
         Change::DeviationCleared { counts } => ("deviation_cleared", json!({"counts": counts})),
-        Change::Stops => ("stops", json!({})),
-        Change::Coasts => ("coasts", json!({})),
-        Change::Stands { at } => ("stands", json!({"at": at})),
+        Change::Stops => ("stopping", json!({})),
+        Change::Coasts => ("coasting", json!({})),
+        Change::Stands { at } => ("stopped", json!({"at": at})),
         Change::Limit { forward, soft } => ("limit", json!({"positive": forward, "soft": soft})),
-        Change::Hits { at } => ("hits", json!({"at": at})),
-        Change::Deviates => ("deviates", json!({})),
-        Change::Homes { method } => ("homing", json!({"method": method})),
+        Change::Hits { at } => ("hard_stop", json!({"at": at})),
+        Change::Deviates => ("position_deviation", json!({})),
+        Change::Homes { method } => ("homing_started", json!({"method": method})),
         Change::Seeks { method, step, mrpm } => {
             let (rpm, until) = (text::rpm(*mrpm), why::until(step.until));
-            ("homing_seeks", json!({"method": method, "rpm": rpm, "until": until}))
+            ("homing_moving", json!({"method": method, "rpm": rpm, "until": until}))
         }
         Change::Finds { method, step, at } => {
             let (until, then) = (why::until(step.until), step.then.name());
-            ("homing_finds", json!({"method": method, "until": until, "at": at, "then": then}))
+            ("homing_found", json!({"method": method, "until": until, "at": at, "then": then}))
         }
         Change::FindsLimit { method, forward, turns, at } => {
-            let fields = json!({"method": method, "positive": forward, "turns": turns, "at": at});
+            let fields =
+                json!({"method": method, "positive": forward, "reverses": turns, "at": at});
             ("homing_limit", fields)
         }
         Change::Refines { method, forward } => {
-            ("homing_refines", json!({"method": method, "forward": forward}))
+            ("homing_index", json!({"method": method, "positive": forward}))
         }
         Change::Origin { method, at } => ("homing_origin", json!({"method": method, "at": at})),
         Change::Homed { method, position } => {
-            ("homed", json!({"method": method, "position": position}))
+            ("homing_complete", json!({"method": method, "position": position}))
         }
         Change::HomingLost { method, why } => {
-            ("homing_lost", json!({"method": method, "why": why.name()}))
+            ("homing_aborted", json!({"method": method, "why": why.name()}))
         }
         Change::NoEffect { order, why } => ("no_effect", no_effect::fields(drive, *order, *why)),
         Change::DeviceFault { device_fault, on } => {
@@ -269,7 +270,7 @@ fn change_fields(drive: &Drive, unit: u8, change: &Change) -> (&'static str, Val
         }
         Change::Bounces { index, times, every } => {
             let (terminal, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
-            ("bounces", json!({"terminal": terminal, "times": times, "every_ms": every}))
+            ("bouncing", json!({"terminal": terminal, "times": times, "every_ms": every}))
         }
         Change::Terminal { index, signal } => {
             ("terminal", json!({"terminal": rows::terminal(drive, *index), "signal": signal}))

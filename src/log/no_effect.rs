@@ -43,24 +43,24 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
         Ignored::NotReady => "the drive is not ready yet".into(),
         Ignored::Alarm => "an alarm is active".into(),
         Ignored::PowerOff => "the servo is off".into(),
-        Ignored::Released => "a release input is active".into(),
+        Ignored::Released => "an input keeps the servo off".into(),
         Ignored::Inhibited => "an input inhibits it".into(),
-        Ignored::AlreadyOn => "the servo is on already".into(),
-        Ignored::AlreadyOff => "the servo is off already".into(),
+        Ignored::AlreadyOn => "the servo is already on".into(),
+        Ignored::AlreadyOff => "the servo is already off".into(),
         Ignored::KeptOn => "an input keeps the servo on".into(),
         Ignored::Latched => "a command keeps the servo on".into(),
         Ignored::AlreadyStopped => "already stopped".into(),
-        Ignored::Stopping => "stopping already".into(),
-        Ignored::Locked => "locked since it ran last".into(),
+        Ignored::Stopping => "already stopping".into(),
+        Ignored::Locked => "locked since its last run".into(),
         Ignored::NotLocked => "nothing is locked".into(),
         Ignored::Held => "a stop input is active".into(),
-        Ignored::Moving => "the axis moves".into(),
+        Ignored::Moving => "the axis is moving".into(),
         Ignored::Homing => "homing in progress".into(),
-        Ignored::Limit => "there is a limit in that direction".into(),
-        Ignored::NoSpeed => "its speed is 0".into(),
-        Ignored::Contradiction => "another input asks for another motion".into(),
-        Ignored::Spent => "an order has ended it; it takes a rising edge".into(),
-        Ignored::NoEdge { since } => format!("still on since {since}; it takes a rising edge"),
+        Ignored::Limit => "a limit is active in that direction".into(),
+        Ignored::NoSpeed => "speed is 0".into(),
+        Ignored::Contradiction => "another input requests a different motion".into(),
+        Ignored::Spent => "ended by a command; needs a rising edge".into(),
+        Ignored::NoEdge { since } => format!("on since {since}; needs a rising edge"),
         Ignored::Starter { row, value } => {
             format!("{} does not allow it", rows::text(drive, Item::Row(row, value)))
         }
@@ -68,29 +68,33 @@ pub fn reason(drive: &Drive, why: Ignored) -> String {
             format!("{} is not supported", rows::text(drive, Item::Row(row, value)))
         }
         Ignored::NoMeaning => "a parameter holds an undefined value".into(),
-        Ignored::NoSegment => "there is no such segment".into(),
-        Ignored::NoChain => "no segment waits for it".into(),
+        Ignored::NoSegment => "no such segment".into(),
+        Ignored::NoChain => "no segment is waiting for it".into(),
         Ignored::NoMotion => "no segment of the chain moves the axis".into(),
         Ignored::NoAlarm => "no alarm is active".into(),
-        Ignored::NotResettable(cause) => format!("no reset clears this alarm: {}", cause.about()),
+        Ignored::NotResettable(cause) => {
+            format!("a reset cannot clear this alarm: {}", cause.about())
+        }
         Ignored::CauseStands(cause) => {
             format!("the cause of the alarm is still present: {}", cause.about())
         }
-        Ignored::OtherAlarm(cause) => format!("the alarm is another one: {}", cause.about()),
+        Ignored::OtherAlarm(cause) => format!("a different alarm is active: {}", cause.about()),
         Ignored::Disabled { row, bit: Some(bit) } => format!("{} bit {bit} is 0", code(drive, row)),
         Ignored::Disabled { row, bit: None } => format!("{} is 0", code(drive, row)),
-        Ignored::Overridden { row } => format!("{} assigns the signal elsewhere", code(drive, row)),
+        Ignored::Overridden { row } => {
+            format!("{} assigns the signal to another function", code(drive, row))
+        }
         Ignored::Nothing => "undefined".into(),
         Ignored::NotSimulated => "not simulated".into(),
         Ignored::StoredOnly => "stored; not simulated".into(),
         Ignored::NoFunction { row, value } => rows::text(drive, Item::Row(row, value)),
         Ignored::Stuck => "the terminal is stuck".into(),
-        Ignored::AlreadySo => "it is so already".into(),
+        Ignored::AlreadySo => "already in that state".into(),
         Ignored::OtherSource(signal) => format!("another source keeps {} on", signal.name()),
-        Ignored::After(action) => format!("{} of the same write goes first", action.name()),
-        Ignored::NoOrder => "no order is set with it".into(),
-        Ignored::MovesOnly => "it applies to move_start only".into(),
-        Ignored::MovesAndRunsOnly => "it applies to move_start and run_start only".into(),
+        Ignored::After(action) => format!("{} in the same write takes precedence", action.name()),
+        Ignored::NoOrder => "no command in the same write".into(),
+        Ignored::MovesOnly => "applies to move_start only".into(),
+        Ignored::MovesAndRunsOnly => "applies to move_start and run_start only".into(),
     }
 }
 

@@ -110,7 +110,7 @@ pub fn text(drive: &Drive, item: Item) -> String {
     let map = &drive.model().map;
     match item {
         Item::Row(id, value) => format!("{} = {}", label(map.row(id)), number(drive, id, value)),
-        Item::Half(id, word) => format!("half of {} = 0x{word:04X}", label(map.row(id))),
+        Item::Half(id, word) => format!("one word of {} = 0x{word:04X}", label(map.row(id))),
         Item::Bare(address, word) => format!("0x{address:04X} = {word}"),
         Item::Unlisted(first, last) if first == last => {
             format!("0x{first:04X} = 0 (not mapped)")

@@ -32,45 +32,47 @@ fn what(what: &What, bus: &Bus) -> String {
                 None => format!("broadcast to unit {unit}: {asked}"),
                 Some(refusal) => {
                     let why = why::refusal(drive, refusal);
-                    format!("broadcast to unit {unit}: {asked}: refused, {why} -> silence")
+                    format!("broadcast to unit {unit}: {asked}: refused, {why} -> no reply")
                 }
             }
         }
         What::BroadcastRead { request } => {
-            format!("broadcast {}: silence, a read has nobody to answer it", to_hex(request))
+            format!("broadcast {} -> no reply: reads cannot be broadcast", to_hex(request))
         }
         What::Foreign { unit, pdu, answer } => {
-            let kind = if *answer { "answer of" } else { "request to" };
-            let here =
-                if *answer { String::new() } else { format!("; {}", who_is_here(*unit, bus)) };
-            format!("foreign {kind} unit {unit}: {}: silence{here}", to_hex(pdu))
+            let kind = if *answer { "reply from" } else { "request to" };
+            let end = match answer {
+                true => String::new(),
+                false => format!(" -> no reply: {}", who_is_here(*unit, bus)),
+            };
+            format!("foreign {kind} unit {unit}: {}{end}", to_hex(pdu))
         }
         What::BadCrc { frame, crc, answered } => {
             let [got, want] = [crc.got, crc.want].map(|crc| to_hex(&crc.to_le_bytes()));
             let end = match answered {
                 Some((_, code)) => format!("exception {code:02X}"),
-                None => "silence".into(),
+                None => "no reply".into(),
             };
-            format!("wrong CRC {got}, should be {want}: {} -> {end}", to_hex(frame))
+            format!("bad CRC {got}, expected {want}: {} -> {end}", to_hex(frame))
         }
         What::BadAscii { characters, why } => {
             let characters = String::from_utf8_lossy(characters).escape_debug().to_string();
-            format!("bad ASCII frame `:{characters}`, {}: silence", why::ascii(*why))
+            format!("bad ASCII frame `:{characters}`, {} -> no reply", why::ascii(*why))
         }
         What::Noise { head, len, why } => {
             let more = if *len > head.len() { " ..." } else { "" };
-            format!("noise, {len} bytes {}: {}{more}: silence", why::noise(*why), to_hex(head))
+            format!("noise, {}: {}{more} -> no reply", why::noise(*why, *len), to_hex(head))
         }
-        What::Moved(mode) => format!("the line is {mode} from now on"),
+        What::Moved(mode) => format!("line settings changed to {mode}"),
         What::Port { port, understood } => {
             let (baud, stop_bits, why) = (port.baud, port.stop_bits, why::port(*port, *understood));
             let bits = if stop_bits == 1 { "bit" } else { "bits" };
             format!(
-                "the master's port is set to {baud} baud and {stop_bits} stop {bits}, the line to {}: {why}",
+                "master port set to {baud} baud, {stop_bits} stop {bits}; line set to {}: {why}",
                 port.line
             )
         }
-        What::Lost(why) => format!("stream closed, {}", why::header(*why)),
+        What::Lost(why) => format!("stream closed: {}", why::header(*why)),
         What::Fault { rule, unit, effect, hit } => {
             let (name, _) = bus.faults().told(*rule);
             format!("fault {name}: {} (hit {hit})", effect_text(*unit, *effect))
@@ -85,9 +87,7 @@ fn what(what: &What, bus: &Bus) -> String {
         }
         What::RepeatedCommand { unit, action, count, .. } => {
             let name = action.name();
-            format!(
-                "unit {unit} repeated_command: {name} again, whose answer nobody heard (no. {count})"
-            )
+            format!("unit {unit} {name} repeated; the first reply never arrived (#{count})")
         }
         What::Drive { drive, unit, change } => {
             format!("unit {unit} {}", change_text(bus.drive(*drive), bus.mode(), change))
@@ -142,44 +142,46 @@ fn who_is_here(unit: u8, bus: &Bus) -> String {
     if let Some((_, deaf)) = bus.drives().find(|(_, drive)| drive.unit() == unit) {
         return match deaf.mode() {
             _ if !deaf.is_powered() => "the drive has no power".into(),
-            Some(mode) => format!("the drive listens at {mode}"),
-            None => "the drive hears nobody".into(),
+            Some(mode) => format!("the drive is set to {mode}"),
+            None => "the drive is set to an undefined baud or format code".into(),
         };
     }
     let mut units: Vec<u8> = bus.drives().map(|(_, drive)| drive.unit()).collect();
     units.sort_unstable();
     let units: Vec<_> = units.iter().map(u8::to_string).collect();
     match units.as_slice() {
-        [only] => format!("here is unit {only}"),
-        _ => format!("here are units {}", units.join(", ")),
+        [only] => format!("the only unit on this line is {only}"),
+        _ => format!("the units on this line are {}", units.join(", ")),
     }
 }
 
 fn effect_text(unit: u8, effect: FaultEffect) -> String {
-    let reply = format!("the reply of unit {unit}");
+    let reply = format!("reply from unit {unit}");
     match effect {
-        FaultEffect::RequestLost => format!("the request to unit {unit} was lost"),
-        FaultEffect::ReplyLost => format!("{reply} was lost"),
-        FaultEffect::BadChecksum => format!("{reply} left with a wrong checksum"),
-        FaultEffect::BitsFlipped(bits) => format!("{bits} bit(s) of {reply} were turned over"),
-        FaultEffect::Truncated(bytes) => format!("{bytes} byte(s) of {reply} were cut off"),
-        FaultEffect::Extra(bytes) => format!("{bytes} byte(s) followed {reply}"),
-        FaultEffect::Garbage(bytes) => format!("{bytes} byte(s) came before {reply}"),
+        FaultEffect::RequestLost => format!("request to unit {unit} lost"),
+        FaultEffect::ReplyLost => format!("{reply} lost"),
+        FaultEffect::BadChecksum => format!("{reply} sent with a bad checksum"),
+        FaultEffect::BitsFlipped(bits) => format!("{} flipped in the {reply}", count(bits, "bit")),
+        FaultEffect::Truncated(bytes) => format!("{reply} truncated by {}", count(bytes, "byte")),
+        FaultEffect::Extra(bytes) => format!("{} appended to the {reply}", count(bytes, "byte")),
+        FaultEffect::Garbage(bytes) => {
+            format!("{} inserted before the {reply}", count(bytes, "byte"))
+        }
         FaultEffect::Delayed(by) => {
-            format!("{reply} leaves {} ms later", by.as_secs_f64() * 1000.0)
+            format!("{reply} delayed by {} ms", by.as_secs_f64() * 1000.0)
         }
-        FaultEffect::Late => format!("{reply} waits for the next request"),
-        FaultEffect::Duplicated => format!("{reply} left twice"),
+        FaultEffect::Late => format!("{reply} held until the next request"),
+        FaultEffect::Duplicated => format!("{reply} sent twice"),
         FaultEffect::Split { gap, .. } => {
-            format!("{reply} leaves in pieces, {} ms apart", gap.as_millis())
+            format!("{reply} split by a gap of {} ms", gap.as_millis())
         }
-        FaultEffect::WrongUnit(other) => format!("{reply} named unit {other}"),
-        FaultEffect::WrongFunction(other) => format!("{reply} named function {other:02X}"),
+        FaultEffect::WrongUnit(other) => format!("{reply} sent as unit {other}"),
+        FaultEffect::WrongFunction(other) => format!("{reply} sent with function {other:02X}"),
         FaultEffect::Exception(code) => {
-            format!("exception {code:02X} answered for unit {unit}, nothing was executed")
+            format!("request to unit {unit} answered with exception {code:02X}, not executed")
         }
-        FaultEffect::Busy => format!("unit {unit} was busy, nothing was executed"),
-        FaultEffect::Echoed => format!("the request to unit {unit} came back"),
+        FaultEffect::Busy => format!("request to unit {unit} answered as busy, not executed"),
+        FaultEffect::Echoed => format!("request to unit {unit} echoed"),
     }
 }
 
@@ -197,7 +199,7 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             let map = &drive.model().map;
             let held = f64::from(*held_ms) / 1000.0;
             let (word, hold) = (rows::label(map.row(*word)), &map.row(*hold).id);
-            format!("{word} = 0: not refreshed for {held} s ({hold})")
+            format!("{word} reset to 0: not refreshed for {held} s ({hold})")
         }
         Change::PositionCleared => "position set to 0".into(),
         Change::TurnsCleared => "encoder turns set to 0".into(),
@@ -207,83 +209,83 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
             let row = row.unwrap_or_else(|| "all parameters".into());
             let within = within.map(|within| format!(" within {} s", within.as_secs()));
             let within = within.unwrap_or_default();
-            format!("wears out its memory: {row} stored {writes} times{within}")
+            format!("excessive EEPROM writes: {row} stored {writes} times{within}")
         }
-        Change::FactoryRestored => "all parameters as from the factory".into(),
+        Change::FactoryRestored => "factory defaults restored".into(),
         Change::Unit { from, to } => {
-            format!("answers to unit {to} from now on, no longer to {from}")
+            format!("unit address changed from {from} to {to}")
         }
         Change::Mode { to: Some(to), .. } => match line {
             Some(line) if line != *to => {
-                format!("listens at {to} from now on; the line is {line}, so it is deaf")
+                format!("serial settings changed to {to}; unreachable: the line is set to {line}")
             }
-            _ => format!("listens at {to} from now on"),
+            _ => format!("serial settings changed to {to}"),
         },
-        Change::Mode { to: None, .. } => {
-            "hears nobody: its parameters hold codes that stand for no speed or format".into()
+        Change::Mode { to: None, .. } => "unreachable: undefined baud or format code".into(),
+        Change::Moves { to } => format!("moving to {to}"),
+        Change::Runs { mrpm } => format!("running at {} rpm", rpm(*mrpm)),
+        Change::Jogs { mrpm } => format!("jogging at {} rpm", rpm(*mrpm)),
+        Change::PositionSegment { number, to } => {
+            format!("position segment {number}: moving to {to}")
         }
-        Change::Moves { to } => format!("moves to {to}"),
-        Change::Runs { mrpm } => format!("runs at {} rpm", rpm(*mrpm)),
-        Change::Jogs { mrpm } => format!("jogs at {} rpm", rpm(*mrpm)),
-        Change::PositionSegment { number, to } => format!("position segment {number} to {to}"),
         Change::VelocitySegment { number, mrpm } => {
-            format!("velocity segment {number} at {} rpm", rpm(*mrpm))
+            format!("velocity segment {number}: running at {} rpm", rpm(*mrpm))
         }
         Change::ChainStep { from, to, why } => {
-            format!("segment {from} goes on with segment {to}: {}", why::chain_step(*why))
+            format!("segment {from} chained to segment {to}: {}", why::chain_step(*why))
         }
         Change::ChainEnded { at, why } => {
             format!("chain ended at segment {at}: {}", no_effect::reason(drive, *why))
         }
         Change::Replans(what) => replanned(what),
-        Change::Pauses => "pauses".into(),
-        Change::Resumes { to } => format!("goes on to {to}"),
+        Change::Pauses => "pausing".into(),
+        Change::Resumes { to } => format!("resumed: moving to {to}"),
         Change::DeviationCleared { counts } => {
             format!("position deviation cleared: {counts} counts")
         }
-        Change::Stops => "stops".into(),
-        Change::Coasts => "runs out, the servo is off".into(),
-        Change::Stands { at } => format!("stands at {at}"),
+        Change::Stops => "stopping".into(),
+        Change::Coasts => "coasting: servo off".into(),
+        Change::Stands { at } => format!("stopped at {at}"),
         Change::Limit { forward, soft } => {
             let kind = if *soft { "soft limit" } else { "limit switch" };
-            format!("stopped by the {} {kind}", side(*forward))
+            format!("{} {kind} reached", side(*forward))
         }
-        Change::Hits { at } => format!("runs against a hard stop at {at}"),
-        Change::Deviates => "position deviation above its threshold".into(),
-        Change::Homes { method } => format!("homing method {method} begins"),
+        Change::Hits { at } => format!("hard stop hit at {at}"),
+        Change::Deviates => "position deviation above threshold".into(),
+        Change::Homes { method } => format!("homing method {method} started"),
         Change::Seeks { method, step, mrpm } => {
             let (until, rpm) = (why::until(step.until), rpm(*mrpm));
-            format!("homing method {method}: at {rpm} rpm until {until}")
+            format!("homing method {method}: moving at {rpm} rpm until {until}")
         }
         Change::Finds { method, step, at } => {
             let until = why::until(step.until);
             let then = match step.then {
-                Then::Ramp => "slowing",
-                Then::Keep => "going on",
-                Then::Origin => "the origin",
+                Then::Ramp => "decelerating",
+                Then::Keep => "continuing",
+                Then::Origin => "taken as origin",
             };
             format!("homing method {method}: {until} at {at}, {then}")
         }
         Change::FindsLimit { method, forward, turns, at } => {
-            let then = if *turns { "turning back" } else { "waiting there for the time limit" };
+            let then = if *turns { "reversing" } else { "waiting for the time limit" };
             format!("homing method {method}: {} limit at {at}, {then}", side(*forward))
         }
         Change::Refines { method, forward } => {
             let way = if *forward { "forward" } else { "backward" };
-            format!("homing method {method}: {way} to the next index pulse")
+            format!("homing method {method}: moving {way} to the next index pulse")
         }
         Change::Origin { method, at } => format!("homing method {method}: origin at {at}"),
         Change::Homed { method, position } => {
-            format!("homing method {method} done, position {position}")
+            format!("homing method {method} complete, position {position}")
         }
         Change::HomingLost { method, why } => {
-            format!("homing method {method} ended without an origin: {}", why.about())
+            format!("homing method {method} aborted: {}", why.about())
         }
         Change::NoEffect { order, why } => no_effect::text(drive, *order, *why),
         Change::DeviceFault { device_fault, on } => device_fault_text(drive, *device_fault, *on),
         Change::Bounces { index, times, every } => {
             let (name, every) = (rows::terminal(drive, *index), every.as_secs_f64() * 1000.0);
-            format!("terminal {name} bounces {times} times, {every} ms from edge to edge")
+            format!("terminal {name} bouncing {times} times, {every} ms between edges")
         }
         Change::Terminal { index, signal } => {
             format!("terminal {} {}", rows::terminal(drive, *index), on_off(*signal))
@@ -292,43 +294,40 @@ fn change_text(drive: &Drive, line: Option<Mode>, change: &Change) -> String {
 }
 
 fn device_fault_text(drive: &Drive, device_fault: DeviceFault, on: bool) -> String {
-    match (device_fault, on) {
-        (DeviceFault::Cause(cause), true) => format!("suffers from now on: {}", cause.about()),
-        (DeviceFault::Cause(cause), false) => format!("suffers no longer: {}", cause.about()),
-        (DeviceFault::Blocked, true) => "is blocked where it stands".into(),
-        (DeviceFault::Blocked, false) => "is free again".into(),
-        (DeviceFault::EncoderLost, true) => "has lost its encoder".into(),
-        (DeviceFault::EncoderLost, false) => "has its encoder again".into(),
-        (DeviceFault::Frozen, true) => "sees its position frozen".into(),
-        (DeviceFault::Frozen, false) => "sees its position again".into(),
-        (DeviceFault::Stuck(index), true) => {
-            format!("terminal {} sticks", rows::terminal(drive, index))
-        }
-        (DeviceFault::Stuck(index), false) => {
-            format!("terminal {} sticks no longer", rows::terminal(drive, index))
-        }
-    }
+    let fault = match device_fault {
+        DeviceFault::Cause(cause) => cause.about().into(),
+        DeviceFault::Blocked => "axis blocked".into(),
+        DeviceFault::EncoderLost => "encoder lost".into(),
+        DeviceFault::Frozen => "position feedback frozen".into(),
+        DeviceFault::Stuck(index) => format!("terminal {} stuck", rows::terminal(drive, index)),
+    };
+    format!("device fault {}: {fault}", on_off(on))
 }
 
 /// What has become different about a motion under way.
 fn replanned(what: &Replanned) -> String {
     let slope = |it: &Option<i64>| match it {
-        Some(mrpm_per_s) => format!("{} rpm/s", rpm(*mrpm_per_s)),
-        None => "at once".into(),
+        Some(mrpm_per_s) => format!("changed to {} rpm/s", rpm(*mrpm_per_s)),
+        None => "without a ramp".into(),
     };
     match what {
-        Replanned::Target { to } => format!("target now {to}"),
-        Replanned::Speed { mrpm } => format!("speed now {} rpm", rpm(*mrpm)),
-        Replanned::SlowSpeed { mrpm } => format!("slow speed now {} rpm", rpm(*mrpm)),
-        Replanned::StartSpeed { mrpm } => format!("start speed now {} rpm", rpm(*mrpm)),
-        Replanned::Acceleration { mrpm_per_s } => format!("acceleration now {}", slope(mrpm_per_s)),
-        Replanned::Deceleration { mrpm_per_s } => format!("deceleration now {}", slope(mrpm_per_s)),
-        Replanned::HomeOffset { by } => format!("offset from the origin now {by}"),
+        Replanned::Target { to } => format!("target changed to {to}"),
+        Replanned::Speed { mrpm } => format!("speed changed to {} rpm", rpm(*mrpm)),
+        Replanned::SlowSpeed { mrpm } => format!("slow speed changed to {} rpm", rpm(*mrpm)),
+        Replanned::StartSpeed { mrpm } => format!("start speed changed to {} rpm", rpm(*mrpm)),
+        Replanned::Acceleration { mrpm_per_s } => format!("acceleration {}", slope(mrpm_per_s)),
+        Replanned::Deceleration { mrpm_per_s } => format!("deceleration {}", slope(mrpm_per_s)),
+        Replanned::HomeOffset { by } => format!("home offset changed to {by}"),
         Replanned::TimeLimit { time: Some(time) } => {
-            format!("homing time limit now {} s", time.as_secs_f64())
+            format!("homing time limit changed to {} s", time.as_secs_f64())
         }
-        Replanned::TimeLimit { time: None } => "no homing time limit now".into(),
+        Replanned::TimeLimit { time: None } => "homing time limit removed".into(),
     }
+}
+
+/// `1 bit`, `3 bits`.
+fn count(number: u8, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 fn on_off(on: bool) -> &'static str {

@@ -5,16 +5,16 @@ use super::named_terms;
 named_terms! {
     /// A cause of an alarm.
     AlarmCause {
-        OverCurrent "over_current" "too much motor current",
-        OverVoltage "over_voltage" "bus voltage too high",
-        UnderVoltage "under_voltage" "bus voltage too low",
-        Overload "overload" "too much torque for too long",
-        Encoder "encoder" "no or implausible feedback",
-        PositionDeviation "position_deviation" "command and feedback too far apart",
-        HomingLimitPos "homing_limit_pos" "the positive limit ended the way of a homing",
-        HomingLimitNeg "homing_limit_neg" "the negative limit ended the way of a homing",
-        HomingTime "homing_time" "no origin within `home.time_limit`",
-        CommTimeout "comm_timeout" "no master spoke to the drive in time",
+        OverCurrent "over_current" "motor current too high",
+        OverVoltage "over_voltage" "DC bus voltage too high",
+        UnderVoltage "under_voltage" "DC bus voltage too low",
+        Overload "overload" "torque above the rating for too long",
+        Encoder "encoder" "encoder feedback missing or implausible",
+        PositionDeviation "position_deviation" "position deviation too large",
+        HomingLimitPos "homing_limit_pos" "positive limit reached during homing",
+        HomingLimitNeg "homing_limit_neg" "negative limit reached during homing",
+        HomingTime "homing_time" "homing not complete within `home.time_limit`",
+        CommTimeout "comm_timeout" "no request from a master in time",
         Forced "forced" "input `alarm_force` is active",
     }
 }

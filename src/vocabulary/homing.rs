@@ -204,11 +204,11 @@ named_terms! {
 named_terms! {
     /// Why a homing ended without an origin.
     HomeEnd {
-        Limit "limit" "a limit ended its way",
-        TimeLimit "time_limit" "its time was over",
-        Alarm "alarm" "an alarm was raised",
-        Stopped "stopped" "the axis was stopped",
-        PowerOff "power_off" "the power stage went off",
-        Replaced "replaced" "another motion took its place",
+        Limit "limit" "limit reached",
+        TimeLimit "time_limit" "time limit exceeded",
+        Alarm "alarm" "alarm raised",
+        Stopped "stopped" "axis stopped",
+        PowerOff "power_off" "servo off",
+        Replaced "replaced" "replaced by another motion",
     }
 }

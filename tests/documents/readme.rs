@@ -55,7 +55,7 @@ fn orders_without_effect_are_told_as_shown() {
 /// All of it but the instants, which are those of a hand on a keyboard.
 #[test]
 fn a_stepper_moves_as_shown() {
-    let lines = logged("moves to 5000");
+    let lines = logged("moving to 5000");
     let without_time = |line: &str| line.rsplit_once(" unit 1 ").map_or("", |it| it.1).to_owned();
     let told: Vec<_> = lines.iter().map(|line| without_time(line)).collect();
     let [speed, order, moves, _, stands, run, runs, stop, stops, _] = &told[..] else {

@@ -12,7 +12,7 @@ fn a_repeated_command_as_json() {
     let [high, low] = rig.drive().model().map.row(row).at.to_be_bytes();
     (0..2).for_each(|_| drop(ask(&mut rig, &[6, high, low, 0, 4])));
     let told = object(rig.events().last().expect("an event"), "line", rig.bus());
-    let text = "unit 1 repeated_command: clear_position again, whose answer nobody heard (no. 1)";
+    let text = "unit 1 clear_position repeated; the first reply never arrived (#1)";
     let want = json!({"t": 0.3, "line": "line", "event": "repeated_command", "unit": 1,
         "action": "clear_position", "count": 1, "text": text});
     assert_eq!(told, want);

@@ -47,7 +47,7 @@ fn an_order_whose_answer_was_lost_comes_again() {
     let mut rig = stepper(&["lose_reply:count=1"]);
     assert_eq!(twice(&mut rig, MOVE), frame(MOVE));
     assert_eq!((moves(&rig), repeated(&rig)), (2, 1));
-    let said = "unit 1 repeated_command: move_start again, whose answer nobody heard (no. 1)\n";
+    let said = "unit 1 move_start repeated; the first reply never arrived (#1)\n";
     assert!(rig.log().ends_with(said), "{}", rig.log());
     rig.advance(Duration::from_secs(5));
     ask(&mut rig, MOVE);
@@ -105,7 +105,7 @@ fn a_hasty_master_is_told_on_as_well() {
     ask(&mut rig, MOVE);
     ask(&mut rig, MOVE);
     assert_eq!((moves(&rig), repeated(&rig)), (1, 1), "{}", rig.log());
-    assert!(rig.log().contains("move_start has no effect: the axis moves"), "{}", rig.log());
+    assert!(rig.log().contains("move_start has no effect: the axis is moving"), "{}", rig.log());
     rig.advance(Duration::from_secs(5));
     ask(&mut rig, MOVE);
     assert_eq!((moves(&rig), repeated(&rig)), (2, 2), "{}", rig.log());

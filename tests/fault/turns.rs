@@ -107,7 +107,7 @@ fn rules_come_and_go() {
     let gone = CommandError::NoFault("lose_reply".into());
     assert_eq!(remove(&mut rig), Err(gone.clone()));
     assert_eq!(gone.to_string(), "no fault rule `lose_reply` on this line");
-    assert!(rig.log().contains("fault lose_reply: the reply of unit 1 was lost (hit 1)"));
+    assert!(rig.log().contains("fault lose_reply: reply from unit 1 lost (hit 1)"));
 }
 
 #[test]

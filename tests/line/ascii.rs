@@ -74,7 +74,7 @@ fn a_second_of_silence() {
         let mut rig = k_series();
         rig.push(&READ[..at]);
         rig.advance(GAP);
-        assert!(rig.log().contains("was not finished"), "{}", rig.log());
+        assert!(rig.log().contains("incomplete frame"), "{}", rig.log());
         assert_eq!(rig.push(&READ[at..]), b"", "at {at}");
         in_step(&mut rig);
     }

@@ -28,7 +28,7 @@ def test_a_refusal_names_the_register_and_the_reason(emulate, instrument):
     emulator.logged(r"unit 1 read 0x0305: refused, 0x0305 is not mapped -> exception 02$")
     with pytest.raises(minimalmodbus.IllegalRequestError):
         master.write_registers(0x1507, [0, 0])
-    emulator.logged(r"unit 1 write P21\.07 .*: refused, .* is read only -> exception 02$")
+    emulator.logged(r"unit 1 write P21\.07 .*: refused, .* is read-only -> exception 02$")
     master.write_register(0x0304, 150, functioncode=6)
     emulator.logged(r"unit 1 write P03\.04 jog speed = 150")
     master.read_register(0x0304)
@@ -112,4 +112,4 @@ def test_an_order_without_effect_as_json(emulate, instrument):
     assert (move["order"], move["action"], move["reason"]) == ("action", "move_start", "servo_off")
     assert move["text"] == "unit 1 move_start has no effect: the servo is off"
     assert (modifier["order"], modifier["row"], modifier["bit"]) == ("bit", "motion_command", 3)
-    assert (modifier["reason"], modifier["why"]) == ("no_order", "no order is set with it")
+    assert (modifier["reason"], modifier["why"]) == ("no_order", "no command in the same write")

@@ -69,7 +69,7 @@ def test_hcfa_jogs_as_long_as_the_master_repeats_itself(pymodbus):
     assert 0.9 < time.monotonic() - last < 1.0 + SLACK
     assert [read(0x3607), read(0x3608)] == [0, 0]
     emulator.logged(r"servo on$")
-    emulator.logged(r"jogs at 100 rpm$")
+    emulator.logged(r"jogging at 100 rpm$")
     emulator.logged(r"not refreshed for 1 s \(P09\.11\)$")
 
 
@@ -92,8 +92,8 @@ def test_yako_moves_to_a_position(emulate, instrument):
     assert 2.0 < time.monotonic() - begin < 2.1 + SLACK
     assert position() == 1000
     assert master.read_register(0x000C, signed=True) == 0
-    emulator.logged(r"moves to 1000$")
-    emulator.logged(r"stands at 1000$")
+    emulator.logged(r"moving to 1000$")
+    emulator.logged(r"stopped at 1000$")
 
 
 def test_k_series_jogs_one_axis(emulate):
@@ -122,4 +122,4 @@ def test_k_series_jogs_one_axis(emulate):
         assert position() == stands
         master.unit = 1
         assert [master.read(0x0457), position()] == [[0x0090], 0]
-    emulator.logged(r"unit 2 jogs at -60 rpm$")
+    emulator.logged(r"unit 2 jogging at -60 rpm$")

@@ -258,7 +258,7 @@ def test_a_new_unit_address_counts_from_the_next_request_on(emulate, connect):
     assert read(client, 0x0900, unit=5) == [5]
     with pytest.raises(ModbusIOException):
         client.read_holding_registers(0x0900, device_id=1)
-    emulator.logged(r"unit 1.*silence.*unit 5")
+    emulator.logged(r"unit 1.*no reply.*5")
 
 
 def test_a_drive_at_another_speed_is_deaf(emulate, connect, tmp_path):
@@ -278,7 +278,7 @@ lines:
     write(client, 0x0901, 3, unit=1)
     with pytest.raises(ModbusIOException):
         client.read_holding_registers(0x0900, device_id=1)
-    emulator.logged(r"unit 1.*silence.*19200-8N2")
+    emulator.logged(r"unit 1.*no reply.*19200-8N2")
     # Once the other has followed, the line is at the new speed.
     write(client, 0x0901, 3, unit=2)
     assert [read(client, 0x0900, unit=unit) for unit in (1, 2)] == [[1], [2]]

@@ -93,7 +93,7 @@ def test_others_do_not(emulate, wire, args):
     emulator = emulate(*args, "--pty")
     line = wire(emulator)
     line.ask_in_vain(broken("01 03 00 20 00 01"))
-    emulator.logged(r"CRC.*silence")
+    emulator.logged(r"CRC.*no reply")
     # And the line is in order afterwards: function 17 is known to none of them.
     refusal = "01 91 02" if "yako" in args[0] else "01 91 01"
     line.ask(frame("01 11"), frame(refusal))

@@ -64,7 +64,7 @@ fn two_runs_are_the_same_byte_for_byte() {
     }
     let log = &first.last().expect("requests").log;
     for word in
-        ["fault lose_reply", "fault flip_bits", "fault busy", "repeated_command", "stands at"]
+        ["fault lose_reply", "fault flip_bits", "fault busy", "reply never arrived", "stopped at"]
     {
         assert!(log.contains(word), "{word} never happens:\n{log}");
     }

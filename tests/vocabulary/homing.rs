@@ -103,8 +103,8 @@ fn the_log_tells_of_homings() {
         by_bit(&mut rig, Input::LimitPos, true);
     }
     let fields = [
-        "event", "method", "rpm", "until", "positive", "turns", "forward", "at", "then",
-        "position", "why", "text",
+        "event", "method", "rpm", "until", "positive", "reverses", "at", "then", "position", "why",
+        "text",
     ];
     let told = rig.events().iter().map(|event| {
         let object = drivemu::log::json::object(event, "line", rig.bus());
@@ -113,22 +113,22 @@ fn the_log_tells_of_homings() {
     });
     let told: Vec<String> = told.filter(|it| it.starts_with("hom")).collect();
     let want = [
-        "homing | 0 | unit 5 homing method 0 begins",
-        "homing_seeks | 0 | 600.0 | home_switch on | unit 5 homing method 0: at 600 rpm until home_switch on",
-        "homing_limit | 0 | true | true | 30005 | unit 5 homing method 0: positive limit at 30005, turning back",
-        "homing_seeks | 0 | -600.0 | home_switch on | unit 5 homing method 0: at -600 rpm until home_switch on",
-        "homing_finds | 0 | home_switch on | -9996 | keep | unit 5 homing method 0: home_switch on at -9996, going on",
-        "homing_seeks | 0 | -30.0 | home_switch off | unit 5 homing method 0: at -30 rpm until home_switch off",
-        "homing_finds | 0 | home_switch off | -19996 | origin | unit 5 homing method 0: home_switch off at -19996, the origin",
-        "homing_refines | 0 | false | unit 5 homing method 0: backward to the next index pulse",
+        "homing_started | 0 | unit 5 homing method 0 started",
+        "homing_moving | 0 | 600.0 | home_switch on | unit 5 homing method 0: moving at 600 rpm until home_switch on",
+        "homing_limit | 0 | true | true | 30005 | unit 5 homing method 0: positive limit at 30005, reversing",
+        "homing_moving | 0 | -600.0 | home_switch on | unit 5 homing method 0: moving at -600 rpm until home_switch on",
+        "homing_found | 0 | home_switch on | -9996 | keep | unit 5 homing method 0: home_switch on at -9996, continuing",
+        "homing_moving | 0 | -30.0 | home_switch off | unit 5 homing method 0: moving at -30 rpm until home_switch off",
+        "homing_found | 0 | home_switch off | -19996 | origin | unit 5 homing method 0: home_switch off at -19996, taken as origin",
+        "homing_index | 0 | false | unit 5 homing method 0: moving backward to the next index pulse",
         "homing_origin | 0 | -22995 | unit 5 homing method 0: origin at -22995",
-        "homed | 0 | 70 | unit 5 homing method 0 done, position 70",
-        "homing | 0 | unit 5 homing method 0 begins",
-        "homing_seeks | 0 | 600.0 | home_switch on | unit 5 homing method 0: at 600 rpm until home_switch on",
-        "homing_limit | 0 | true | true | 70 | unit 5 homing method 0: positive limit at 70, turning back",
-        "homing_seeks | 0 | -600.0 | home_switch on | unit 5 homing method 0: at -600 rpm until home_switch on",
-        "homing_limit | 0 | false | false | -326931 | unit 5 homing method 0: negative limit at -326931, waiting there for the time limit",
-        "homing_lost | 0 | time_limit | unit 5 homing method 0 ended without an origin: its time was over",
+        "homing_complete | 0 | 70 | unit 5 homing method 0 complete, position 70",
+        "homing_started | 0 | unit 5 homing method 0 started",
+        "homing_moving | 0 | 600.0 | home_switch on | unit 5 homing method 0: moving at 600 rpm until home_switch on",
+        "homing_limit | 0 | true | true | 70 | unit 5 homing method 0: positive limit at 70, reversing",
+        "homing_moving | 0 | -600.0 | home_switch on | unit 5 homing method 0: moving at -600 rpm until home_switch on",
+        "homing_limit | 0 | false | false | -326931 | unit 5 homing method 0: negative limit at -326931, waiting for the time limit",
+        "homing_aborted | 0 | time_limit | unit 5 homing method 0 aborted: time limit exceeded",
     ];
     assert_eq!(told, want);
 }

@@ -137,19 +137,22 @@ fn the_log_tells_of_motions() {
     rig.advance(second);
     give(&mut rig, Action::Release);
     rig.advance(second);
-    let told = told(&rig, &["moves", "runs", "jogs", "stops", "coasts", "stands", "no_effect"]);
+    let told = told(
+        &rig,
+        &["moving", "running", "jogging", "stopping", "coasting", "stopped", "no_effect"],
+    );
     let want = [
         "no_effect | run_start | the servo is off | unit 5 run_start has no effect: the servo is off",
-        "moves | 200000 | unit 5 moves to 200000",
-        "stands | 200000 | unit 5 stands at 200000",
+        "moving | 200000 | unit 5 moving to 200000",
+        "stopped | 200000 | unit 5 stopped at 200000",
         "no_effect | quick_stop | already stopped | unit 5 quick_stop has no effect: already stopped",
-        "runs | 60.0 | unit 5 runs at 60 rpm",
-        "stops | unit 5 stops",
-        "stands | 331072 | unit 5 stands at 331072",
-        "jogs | 60.0 | unit 5 jogs at 60 rpm",
-        "coasts | unit 5 runs out, the servo is off",
+        "running | 60.0 | unit 5 running at 60 rpm",
+        "stopping | unit 5 stopping",
+        "stopped | 331072 | unit 5 stopped at 331072",
+        "jogging | 60.0 | unit 5 jogging at 60 rpm",
+        "coasting | unit 5 coasting: servo off",
         // A second less half a ramp, and half of the 100 ms in which it runs out.
-        "stands | 462144 | unit 5 stands at 462144",
+        "stopped | 462144 | unit 5 stopped at 462144",
     ];
     assert_eq!(told, want);
 }

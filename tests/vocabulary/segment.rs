@@ -62,10 +62,10 @@ fn the_log_tells_of_segments() {
     let kinds = ["position_segment", "velocity_segment", "chain_step", "no_effect"];
     let want = [
         "no_effect | segment_start | the servo is off | unit 5 segment_start has no effect: the servo is off",
-        "position_segment | 16 | 40000 | unit 5 position segment 16 to 40000",
-        "chain_step | 16 | 17 | the position is reached | unit 5 segment 16 goes on with segment 17: the position is reached",
-        "position_segment | 17 | -5000 | unit 5 position segment 17 to -5000",
-        "velocity_segment | 0 | 60.0 | unit 5 velocity segment 0 at 60 rpm",
+        "position_segment | 16 | 40000 | unit 5 position segment 16: moving to 40000",
+        "chain_step | 16 | 17 | position reached | unit 5 segment 16 chained to segment 17: position reached",
+        "position_segment | 17 | -5000 | unit 5 position segment 17: moving to -5000",
+        "velocity_segment | 0 | 60.0 | unit 5 velocity segment 0: running at 60 rpm",
     ];
     assert_eq!(super::motion::told(&rig, &kinds), want);
 }
@@ -80,6 +80,7 @@ fn the_log_tells_where_a_chain_ends() {
     }
     start(&mut rig, &[]);
     rig.advance(Duration::from_secs(5));
-    let want = "chain_ended | 15 | there is no such segment | unit 5 chain ended at segment 15: there is no such segment";
+    let want =
+        "chain_ended | 15 | no such segment | unit 5 chain ended at segment 15: no such segment";
     assert_eq!(super::motion::told(&rig, &["chain_ended"]), [want]);
 }
