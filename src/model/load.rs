@@ -1,9 +1,8 @@
 //! From the text of a model file to a [`Model`], or to everything that is wrong with it.
 
-use super::expand::{expand, without_rows};
 use super::options::{OptionInfo, choose, lay_over};
-use super::raw::{KEYS, RawModel};
-use super::{Model, RowId, Station, line, rows, wiring};
+use super::raw::{KEYS, RawOption};
+use super::{Model, compile};
 use crate::problem::{Path, Problem, section};
 use serde_yaml::Value;
 use std::collections::BTreeMap;
@@ -30,10 +29,9 @@ pub fn load(text: &str, choices: &Choices) -> Result<Model, Vec<Problem>> {
         }
         layered
     };
-    let infos = || {
-        options.iter().map(|(name, option)| OptionInfo::new(name, option, &chosen[name])).collect()
-    };
-    let model = compile(&layered(&chosen), &mut problems, infos);
+    let info = |(name, option): (&String, &RawOption)| OptionInfo::new(name, option, &chosen[name]);
+    let infos = options.iter().map(info).collect();
+    let model = compile::compile(&layered(&chosen), infos, &mut problems);
     match (model, problems.is_empty()) {
         (Some(model), true) => Ok(model),
         _ => Err(problems),
@@ -60,88 +58,11 @@ pub fn check(text: &str) -> Vec<Problem> {
     problems
 }
 
-fn read_options(
-    file: &Value,
-    problems: &mut Vec<Problem>,
-) -> BTreeMap<String, super::raw::RawOption> {
+fn read_options(file: &Value, problems: &mut Vec<Problem>) -> BTreeMap<String, RawOption> {
     let path = Path::root().key("options");
     let entries = section::entries(file.get("options"), &path, problems);
     let read = |(name, path, value): (String, Path, &Value)| {
         section::read(value, &path, KEYS, problems).map(|option| (name, option))
     };
     entries.into_iter().filter_map(read).collect()
-}
-
-fn compile(
-    file: &Value,
-    problems: &mut Vec<Problem>,
-    options: impl FnOnce() -> Vec<OptionInfo>,
-) -> Option<Model> {
-    let mut head = without_rows(file);
-    if let Value::Mapping(map) = &mut head {
-        map.remove("options");
-    }
-    let (entries, lost) = expand(file, problems);
-    let raw: RawModel = section::read(&head, &Path::root(), KEYS, problems)?;
-    check_identity(&raw, problems);
-    let rows = rows::compile(entries, lost, &raw.windows, problems);
-    let line = line::compile(&raw.line, &rows, problems);
-    let wiring = wiring::compile(&raw, &rows, problems);
-    let line = line?;
-    wiring::check_inert(&rows, &line, &wiring, problems);
-    let stations = stations(&raw, &rows, problems);
-    Some(Model {
-        vendor: raw.model.vendor,
-        name: raw.model.name,
-        about: raw.model.about,
-        products: raw.model.products,
-        manual: format!("{}, {}", raw.manual.title, raw.manual.rev),
-        options: options(),
-        line,
-        map: rows.map,
-        stations,
-        wiring,
-    })
-}
-
-fn check_identity(raw: &RawModel, problems: &mut Vec<Problem>) {
-    if raw.format != 1 {
-        let what = format!("unsupported format {}; this version reads format 1", raw.format);
-        problems.push(Problem::value(Path::root().key("format"), what));
-    }
-    let name = &raw.model.name;
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    if name.is_empty() || !name.chars().all(plain) {
-        let what = format!("invalid model name `{name}`");
-        let path = Path::root().key("model").key("name");
-        problems.push(Problem::value(path, what).advise("use lower-case letters, digits and `-`"));
-    }
-}
-
-fn stations(raw: &RawModel, rows: &rows::Compiled, problems: &mut Vec<Problem>) -> Vec<Station> {
-    if raw.stations.is_empty() {
-        return vec![Station { name: String::new(), init: Vec::new() }];
-    }
-    let mut stations: Vec<Station> = Vec::new();
-    for (i, station) in raw.stations.iter().enumerate() {
-        let path = Path::root().key("stations").index(i);
-        if stations.iter().any(|it| it.name == station.name) {
-            let what = format!("duplicate station name `{}`", station.name);
-            problems.push(Problem::value(path.key("name"), what));
-        }
-        let path = path.key("init");
-        let mut init: Vec<(RowId, u32)> = Vec::new();
-        for (id, value) in &station.init {
-            let path = path.key(id);
-            let Some(row) = rows.find(id, &path, problems) else { continue };
-            if !rows.map.row(row).admits(*value) {
-                let what =
-                    format!("{value} is outside the range {}", rows.map.row(row).range_text());
-                problems.push(Problem::value(path, what));
-            }
-            init.push((row, rows.map.row(row).kind.raw(*value)));
-        }
-        stations.push(Station { name: station.name.clone(), init });
-    }
-    stations
 }

@@ -6,30 +6,21 @@
 //! here, and no running state.
 
 pub mod builtin;
-mod expand;
+mod compile;
 mod line;
 mod load;
 mod options;
 pub mod raw;
 mod row;
-mod rows;
-mod times;
 mod wiring;
 
 pub use crate::vocabulary::RowId;
-pub use line::{
-    Coded, LineRules, LongAccess, Refuse, RegisterOrder, UnitRule, WireFormat, WordOrder,
-};
+pub use compile::duration;
+pub use line::{LineRules, LongAccess, Refuse, RegisterOrder, UnitRule, WireFormat, WordOrder};
 pub use load::{Choices, check, load};
 pub use options::OptionInfo;
 pub use row::{Access, Applies, Layer, Located, Map, Row, RowKind, Window};
-pub use times::duration;
-pub use wiring::{
-    Alarm, AlarmStop, AxisWiring, BitOverride, ChainLink, ChainRules, Choice, CommandRows, Counts,
-    Finish, Gear, HoldTime, HomingRules, InputWords, InterruptWiring, Limits, Monitor, Number,
-    OutputWords, PositionSegment, PositionSegments, Reaction, Segments, ServoWiring, SettingRow,
-    Shown, Shows, Terminals, Triggers, VelocitySegments, Wiring,
-};
+pub use wiring::*;
 
 /// One drive of one vendor, as data.
 #[derive(Debug)]

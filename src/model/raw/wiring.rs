@@ -38,7 +38,8 @@ pub struct RawInputs {
     /// was written.
     pub monitors: BTreeMap<String, String>,
     /// Settings that take the signals of such bits away: row -> bit -> setting. While that is not 0, the bit does not act.
-    pub claims: BTreeMap<String, BTreeMap<u8, RawDigit>>,
+    #[serde(alias = "claims")]
+    pub bit_overrides: BTreeMap<String, BTreeMap<u8, RawDigit>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
     pub commands: BTreeMap<String, BTreeMap<i64, String>>,
     /// Rows in which writing a 1 to a bit triggers an action. Every write triggers.
@@ -257,4 +258,20 @@ pub enum RawAlarmStop {
 
 fn yes() -> bool {
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Models that were written before the key had its name still load.
+    #[test]
+    fn bit_overrides_were_claims() {
+        let read = |text: &str| {
+            let inputs: RawInputs = serde_yaml::from_str(text).expect("inputs");
+            inputs.bit_overrides["P1"][&3].register.clone()
+        };
+        assert_eq!(read("claims: {P1: {3: {register: P2}}}"), "P2");
+        assert_eq!(read("bit_overrides: {P1: {3: {register: P2}}}"), "P2");
+    }
 }

@@ -1,11 +1,6 @@
-//! What is always the same or as a row says: words resolved, whichever it is.
+//! What is always the same or as a row says: codes in rows, and in hex digits of rows.
 
-use super::compile::Wirer;
 use crate::model::RowId;
-use crate::model::line::{Coded, code_in, coded, has_digit};
-use crate::model::raw::{RawChoice, RawChosen, RawDigit};
-use crate::problem::Path;
-use crate::vocabulary::Named;
 use std::collections::BTreeMap;
 
 /// Always the same, or as a row says.
@@ -23,6 +18,14 @@ impl<T: Copy> Choice<T> {
         match self {
             Self::Fixed(it) => Some(*it),
             Self::Row(coded) => coded.decode(value(coded.row)),
+        }
+    }
+
+    /// Everything that it can come to.
+    pub fn all(&self) -> Vec<T> {
+        match self {
+            Self::Fixed(it) => vec![*it],
+            Self::Row(coded) => coded.codes.values().copied().collect(),
         }
     }
 
@@ -51,57 +54,30 @@ impl Digit {
     }
 }
 
-impl Wirer<'_> {
-    pub(super) fn words_chosen<W: Named>(
-        &mut self,
-        raw: &Option<RawChoice<String>>,
-        kind: &str,
-        path: &Path,
-    ) -> Option<Choice<W>> {
-        self.choice(raw, path, |wirer, name: &String, path| wirer.word(name, kind, path))
+/// A row, or one hex digit of it, whose values are codes for something.
+#[derive(Debug)]
+pub struct Coded<T> {
+    /// The row.
+    pub row: RowId,
+    /// Which hex digit from the right; `None` is the whole value.
+    pub digit: Option<u8>,
+    /// Meaning by code.
+    pub codes: BTreeMap<i64, T>,
+}
+
+impl<T: Copy> Coded<T> {
+    /// What `value` of the row stands for, if anything.
+    pub fn decode(&self, value: i64) -> Option<T> {
+        self.codes.get(&self.code_in(value)).copied()
     }
 
-    pub(super) fn choice<R, T: Copy>(
-        &mut self,
-        raw: &Option<RawChoice<R>>,
-        path: &Path,
-        read: impl Fn(&mut Self, &R, &Path) -> Option<T>,
-    ) -> Option<Choice<T>> {
-        Some(match raw.as_ref()? {
-            RawChoice::Fixed(it) => Choice::Fixed(read(self, it, path)?),
-            RawChoice::Row(it) => Choice::Row(self.chosen(it, path, read)?),
-        })
-    }
-
-    pub(super) fn chosen<R, T: Copy>(
-        &mut self,
-        raw: &RawChosen<R>,
-        path: &Path,
-        read: impl Fn(&mut Self, &R, &Path) -> Option<T>,
-    ) -> Option<Coded<T>> {
-        let row = self.row(&raw.register, &path.key("register"));
-        coded(row, raw.digit, &raw.codes, self.rows, path, self.problems);
-        let mut codes = BTreeMap::new();
-        for (code, it) in &raw.codes {
-            let meaning = read(self, it, &path.key("codes").key(code));
-            codes.extend(meaning.map(|meaning| (*code, meaning)));
-        }
-        Some(Coded { row: row?, digit: raw.digit, codes })
-    }
-
-    pub(super) fn digit(&mut self, raw: &RawDigit, path: &Path) -> Option<Digit> {
-        has_digit(raw.digit, path, self.problems);
-        let row = self.row(&raw.register, &path.key("register"))?;
-        Some(Digit { row, digit: raw.digit })
+    /// The code in `value` of the row: the whole of it, or one digit.
+    pub fn code_in(&self, value: i64) -> i64 {
+        code_in(value, self.digit)
     }
 }
 
-impl<T: Copy> Choice<T> {
-    /// Everything that it can come to.
-    pub(super) fn all(&self) -> Vec<T> {
-        match self {
-            Self::Fixed(it) => vec![*it],
-            Self::Row(coded) => coded.codes.values().copied().collect(),
-        }
-    }
+/// The code in `value`: the whole of it, or one hex digit.
+pub(in crate::model) fn code_in(value: i64, digit: Option<u8>) -> i64 {
+    digit.map_or(value, |digit| value >> (4 * digit) & 0xF)
 }

@@ -1,87 +1,90 @@
-//! What of the catalogues a model has wired, wherever it stands.
+//! Which rows a model goes by, and when a value counts that somebody writes to one.
 
-use super::Shows;
-use super::compile::Wirer;
-use crate::problem::{Path, Problem, suggest};
-use crate::vocabulary::{Action, AlarmCause, HomeStarter, Input, Named, Output};
+use super::{Choice, Counts, HomingRules, Number, Reaction, Wiring};
+use crate::model::{Applies, Model, RowId};
+use crate::vocabulary::{Named, Taken};
 
-/// Signals that a machine moves, and that a homing step can wait for.
-const SWITCHES: [Input; 3] = [Input::HomeSwitch, Input::LimitPos, Input::LimitNeg];
-
-impl Wirer<'_> {
-    pub(super) fn inputs_wired(&self) -> Vec<Input> {
-        let wiring = &self.wiring;
-        let machine = wiring.machine_inputs.iter().copied();
-        let terminals = wiring.input_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
-        let words = wiring.input_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
-        let bits = wiring.input_bits.iter().flat_map(|(_, bits)| bits).map(|it| it.1);
-        terminals.chain(words).chain(bits).chain(machine).collect()
+impl Wiring {
+    /// Every row that shows, sets off or decides something. One may come more than once.
+    pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
+        let shows = self.shows.iter().map(Option::is_some);
+        let reacts = self.reactions.iter().map(|it| *it != Reaction::None);
+        let by_index =
+            shows.zip(reacts).enumerate().filter(|(_, (shows, reacts))| *shows || *reacts);
+        let thresholds = self.thresholds.iter().filter_map(|(_, number)| number.row());
+        let hold = self.input_words.iter().flat_map(|it| &it.hold).map(|it| it.row);
+        let enabled_by = self.output_words.iter().flat_map(|it| &it.enabled_by).copied();
+        let terminals = self.output_terminals.iter();
+        let terminals =
+            terminals.flat_map(|it| it.functions.iter().copied().chain(it.normally_closed));
+        by_index
+            .map(|(i, _)| RowId(i as u16))
+            .chain(self.axis.rows())
+            .chain(self.homing.iter().flat_map(HomingRules::rows))
+            .chain(self.limits.rows())
+            .chain(self.user_outputs)
+            .chain(thresholds)
+            .chain(hold)
+            .chain(enabled_by)
+            .chain(terminals)
     }
 
-    pub(super) fn actions_wired(&self) -> Vec<Action> {
-        let commands = self.wiring.commands.iter().flat_map(|it| &it.actions).map(|it| it.1);
-        let triggers = self.wiring.triggers.iter().flat_map(|it| &it.actions).map(|it| it.1);
-        commands.chain(triggers).collect()
+    /// Can a value of `row` count from a standstill on? An axis turns round there and takes settings, and a
+    /// homing starts.
+    pub fn counts_from_standstill(&self, row: RowId) -> bool {
+        let settings = self.axis.all_settings().map(|it| it.row);
+        let homing = self.homing.iter().flat_map(HomingRules::rows);
+        let axis = self.axis.reversed.into_iter().chain(self.axis.counts_per_rev.row());
+        settings.chain(homing).chain(axis).any(|it| it == row)
     }
+}
 
-    pub(super) fn is_shown(&self, output: Output) -> bool {
-        let wiring = &self.wiring;
-        let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
-        let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
-        let bits = wiring.shows.iter().flatten().filter_map(|it| match it {
-            Shows::Bits(bits) => Some(bits),
-            _ => None,
-        });
-        let bits = bits.flatten().map(|it| it.1);
-        terminals.chain(words).chain(bits).any(|it| it.signal == output)
-    }
-
-    /// The starters that a row of the model allows; `None` where no row decides.
-    pub(super) fn starters(&self) -> Option<Vec<HomeStarter>> {
-        let starter = self.wiring.homing.as_ref()?.starter.as_ref()?;
-        Some(starter.codes.values().copied().collect())
-    }
-
-    /// Does a row of the model allow a homing that nobody asks for?
-    pub(super) fn homes_at_first_enable(&self) -> bool {
-        self.starters().is_some_and(|it| it.contains(&HomeStarter::FirstEnable))
-    }
-
-    /// The signal of a switch by its name.
-    pub(super) fn switch(&mut self, name: &str, path: &Path) -> Option<Input> {
-        let found = SWITCHES.into_iter().find(|it| it.name() == name);
-        if found.is_none() {
-            let names = SWITCHES.map(Named::name);
-            let advice = suggest::did_you_mean(name, names)
-                .unwrap_or_else(|| format!("known: {}", names.join(", ")));
-            let what = format!("unknown switch `{name}`");
-            self.problems.push(Problem::value(path.clone(), what).advise(advice));
+impl Model {
+    /// What goes by the value of `row`, and when a new one counts for it. Empty for a row that nothing goes by,
+    /// or whose value is an order or a signal.
+    pub fn counts(&self, row: RowId) -> Vec<(&'static str, Taken)> {
+        let (wiring, axis) = (&self.wiring, &self.wiring.axis);
+        let mut counts = Vec::new();
+        let mut add = |name, taken| {
+            if !counts.contains(&(name, taken)) {
+                counts.push((name, taken));
+            }
+        };
+        let settings = axis.all_settings().filter(|it| it.row == row);
+        settings.for_each(|it| add(it.setting.name(), it.taken));
+        let thresholds = wiring.thresholds.iter().filter(|(_, it)| *it == Number::Row(row));
+        thresholds.for_each(|(it, _)| add(it.name(), Taken::Live));
+        let is = |choice: Option<RowId>| choice == Some(row);
+        let hold = wiring.input_words.as_ref().and_then(|it| it.hold.as_ref()).map(|it| it.row);
+        let whole = [
+            ("axis.counts_per_rev", axis.counts_per_rev == Counts::Row(row), Taken::AtStart),
+            ("axis.reversed", is(axis.reversed), Taken::AtStart),
+            ("axis.speed_unit", is(axis.speed_unit.as_ref().map(|it| it.row)), Taken::Live),
+            ("limits.stop", is(wiring.limits.stop.as_ref().and_then(Choice::row)), Taken::Live),
+            ("limits.soft", is(wiring.limits.soft.as_ref().and_then(Choice::row)), Taken::Live),
+            ("line.timeout", wiring.timeout.as_ref().is_some_and(|it| it.row == row), Taken::Live),
+            ("hold", is(hold), Taken::Live),
+        ];
+        whole.into_iter().filter(|it| it.1).for_each(|(name, _, taken)| add(name, taken));
+        if axis.segments.rules().any(|it| it == row) {
+            add("axis.segments", Taken::AtOrder);
         }
-        found
-    }
-
-    /// Tells of `key`, which has no effect.
-    pub(super) fn unused(&mut self, key: &str, why: &str, path: &Path) {
-        let what = format!("`{key}` has no effect: {why}");
-        self.problems.push(Problem::key(path.key(key), what).advise("remove it"));
-    }
-
-    /// Tells of `output` if it shows although nothing turns it on.
-    pub(super) fn never_on(&mut self, output: Output, why: &str) {
-        if self.is_shown(output) {
-            let what = format!("output signal `{}` is never on: {why}", output.name());
-            let path = Path::root().key("signals").key("outputs");
-            self.problems.push(Problem::key(path, what).advise("remove it"));
+        if let Some(homing) = &wiring.homing {
+            let live = self.map.row(row).applies == Some(Applies::Now);
+            let ordered = if live { Taken::Live } else { Taken::AtOrder };
+            let homing = [
+                ("homing.method", is(homing.method), Taken::AtOrder),
+                ("homing.starter", is(homing.starter.as_ref().map(|it| it.row)), Taken::AtOrder),
+                ("homing.limit", is(homing.limit.as_ref().and_then(Choice::row)), ordered),
+                ("homing.limit_source", is(homing.source.as_ref().and_then(Choice::row)), ordered),
+                ("homing.index", is(homing.index.as_ref().and_then(Choice::row)), ordered),
+                ("homing.finish", is(homing.finish.as_ref().and_then(Choice::row)), ordered),
+                ("homing.time_factor", is(homing.time_factor.map(|it| it.row)), ordered),
+            ];
+            // A homing starts from standstill only, so its order is a start.
+            let at = |taken| if taken == Taken::AtOrder { Taken::AtStart } else { taken };
+            homing.into_iter().filter(|it| it.1).for_each(|(name, _, taken)| add(name, at(taken)));
         }
-    }
-
-    /// What `path` stands for ends in an alarm, so the alarm has a number.
-    pub(super) fn needs_alarm(&mut self, name: &str, cause: AlarmCause, path: Path) {
-        if self.wiring.alarm(cause).is_none() {
-            let cause = cause.name();
-            let what = format!("`{name}` can raise alarm `{cause}`, which has no number");
-            let advice = format!("add `{cause}: {{code: N}}` to `alarms`");
-            self.problems.push(Problem::key(path, what).advise(advice));
-        }
+        counts
     }
 }

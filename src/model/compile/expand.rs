@@ -1,6 +1,6 @@
 //! Folded rows unfolded: repeats and fills become one list of rows, each with its path in the file.
 
-use super::raw::{KEYS, RawFill, RawRow, RawRowRepeat, RawSim, RawType};
+use crate::model::raw::{KEYS, RawFill, RawRow, RawRowRepeat, RawSim, RawType};
 use crate::problem::{Path, Problem, bounds, section};
 use serde_yaml::Value;
 use std::collections::BTreeMap;
@@ -178,11 +178,11 @@ pub(super) fn number(text: &str, n: u16) -> String {
     out + rest
 }
 
-/// Everything of `file` but rows and options, so that it can be read as a whole.
+/// Everything of `file` but rows and options, which are read one by one.
 pub(super) fn without_rows(file: &Value) -> Value {
     let mut file = file.clone();
     if let Value::Mapping(map) = &mut file {
-        for key in ["registers", "repeats", "fill"] {
+        for key in ["registers", "repeats", "fill", "options"] {
             map.remove(key);
         }
     }

@@ -1,24 +1,24 @@
 //! Compiles rows and windows into a [`Map`], and finds what is wrong with them.
 
 use super::expand::ExpandedRow;
-use super::raw::{
-    RawAccess, RawApplies, RawLayer, RawLock, RawOrder, RawRange, RawType, RawWindow,
+use crate::model::raw::{
+    RawAccess, RawApplies, RawLayer, RawLock, RawOrder, RawRange, RawRow, RawType, RawWindow,
 };
-use super::row::{Access, Applies, Layer, Map, Row, RowKind, Window, span_text};
-use super::{RegisterOrder, RowId};
+use crate::model::row::span_text;
+use crate::model::{Access, Applies, Layer, Map, RegisterOrder, Row, RowId, RowKind, Window};
 use crate::problem::{Path, Problem, suggest};
 use crate::units::Unit;
 use std::collections::BTreeMap;
 
 /// Rows by address with the path that each came from.
-pub(super) struct Compiled {
+pub(super) struct Rows {
     pub map: Map,
     pub paths: Vec<Path>,
     /// Names of rows that were left out, each for a problem of its own.
     lost: Vec<String>,
 }
 
-impl Compiled {
+impl Rows {
     /// The row called `id`, or a problem at `path` with advice.
     pub fn find(&self, id: &str, path: &Path, problems: &mut Vec<Problem>) -> Option<RowId> {
         let found = self.map.rows().find(|(_, row)| row.id == id);
@@ -45,7 +45,7 @@ pub(super) fn compile(
     mut lost: Vec<String>,
     windows: &BTreeMap<String, RawWindow>,
     problems: &mut Vec<Problem>,
-) -> Compiled {
+) -> Rows {
     let mut entries = without_overlaps(entries, &mut lost, problems);
     entries.sort_by_key(|entry| entry.row.at);
     let paths = entries.iter().map(|entry| entry.path.clone()).collect();
@@ -53,7 +53,7 @@ pub(super) fn compile(
     let windows = compile_windows(windows, problems);
     whole_pairs(&rows, &windows, problems);
     autosaves(&entries, &windows, problems);
-    Compiled { map: Map::new(rows, windows), paths, lost }
+    Rows { map: Map::new(rows, windows), paths, lost }
 }
 
 /// Leaves out rows whose addresses or names others have taken: one problem each.
@@ -180,7 +180,7 @@ fn row(ExpandedRow { id, path, row: raw }: &ExpandedRow, problems: &mut Vec<Prob
 
 /// A key that could change nothing on this row is a mistake, not a decoration.
 fn reject_keys_without_effect(
-    raw: &super::raw::RawRow,
+    raw: &RawRow,
     kind: RowKind,
     path: &Path,
     problems: &mut Vec<Problem>,
@@ -214,7 +214,7 @@ fn reject_keys_without_effect(
 
 /// A value with a meaning that no write may carry is a slip of the list or of the range.
 fn reject_values_never_held(
-    raw: &super::raw::RawRow,
+    raw: &RawRow,
     kind: RowKind,
     spans: &[(i64, i64)],
     path: &Path,
