@@ -2,7 +2,7 @@
 
 use crate::kit::{MODELS, line_of, text_of};
 use drivemu::bench::{Device, DeviceSpec, WireSpec};
-use drivemu::bus::{Bus, Command, LinkId};
+use drivemu::bus::{Bus, LineCommand, LinkId};
 use drivemu::model::Choices;
 use drivemu::model::builtin::Builtin;
 use drivemu::time::{Duration, Instant};
@@ -25,7 +25,7 @@ fn a_transaction_in_the_steady_state_allocates_nothing() {
         let mut line = line_of(text_of(name), &[], &DeviceSpec::default());
         line.add_fault("late:register=0-0xFFFF,skip=1000000").expect("a good rule");
         let rule = line.faults.remove(0);
-        bus.command(bus.now(), Command::AddFault(rule)).expect("a free name");
+        bus.command(bus.now(), LineCommand::AddFault(rule).into()).expect("a free name");
         let mut now = Instant::from_millis(2000);
         bus.advance_to(now);
         while bus.poll_output().is_some() {}

@@ -3,7 +3,7 @@
 
 use crate::kit::rig;
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::{Command, CommandError};
+use drivemu::bus::{Command, CommandError, DriveOrder, LineCommand};
 use drivemu::event::{DeviceFault, DriveId, Outcome, Remark};
 use drivemu::testkit::Rig;
 use drivemu::vocabulary::AlarmCause;
@@ -39,7 +39,7 @@ fn each_device_fault_as_json() {
         };
         let mut rig = drive("yako-closed-loop");
         for on in [true, false] {
-            rig.command(Command::DeviceFault { drive: FIRST, device_fault, on })
+            rig.command(Command::Drive(FIRST, DriveOrder::DeviceFault { device_fault, on }))
                 .expect("it can be");
         }
         let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
@@ -52,8 +52,9 @@ fn each_device_fault_as_json() {
     }
     let mut rig = drive("yako-closed-loop");
     let every = Duration::from_millis(5);
-    rig.command(Command::Bounce { drive: FIRST, index: 2, times: 3, every }).expect("a terminal");
-    rig.command(Command::Power { drive: FIRST, on: false }).expect("it has power");
+    rig.command(Command::Drive(FIRST, DriveOrder::Bounce { index: 2, times: 3, every }))
+        .expect("a terminal");
+    rig.command(Command::Drive(FIRST, DriveOrder::Power(false))).expect("it has power");
     let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
     let told: Vec<Value> = told.collect();
     let bounces = told.iter().find(|it| it["event"] == "bouncing").expect("told");
@@ -70,9 +71,9 @@ fn stations_of_a_device_share_their_power() {
     let mut rig = drive("k-series");
     let units: Vec<u8> = rig.bus().drives().map(|(_, drive)| drive.unit()).collect();
     assert_eq!(units.len(), 2);
-    rig.command(Command::Power { drive: DriveId(1), on: false }).expect("it has power");
+    rig.command(Command::Drive(DriveId(1), DriveOrder::Power(false))).expect("it has power");
     assert!(units.iter().all(|unit| rig.bus().find(*unit).is_none()));
-    rig.command(Command::Power { drive: FIRST, on: true }).expect("it had power");
+    rig.command(Command::Drive(FIRST, DriveOrder::Power(true))).expect("it had power");
     assert!(units.iter().all(|unit| rig.bus().find(*unit).is_some()));
 }
 
@@ -81,25 +82,30 @@ fn what_can_not_be() {
     let mut rig = drive("yako-closed-loop");
     let cause = AlarmCause::CommTimeout;
     let no_alarm = Err(CommandError::NoAlarm("comm_timeout"));
-    let hold =
-        Command::DeviceFault { drive: FIRST, device_fault: DeviceFault::Cause(cause), on: true };
+    let hold = Command::Drive(
+        FIRST,
+        DriveOrder::DeviceFault { device_fault: DeviceFault::Cause(cause), on: true },
+    );
     assert_eq!(rig.command(hold), no_alarm);
     let no_terminal = Err(CommandError::NoTerminal { got: 4, have: 4 });
-    let stick =
-        Command::DeviceFault { drive: FIRST, device_fault: DeviceFault::Stuck(4), on: true };
+    let stick = Command::Drive(
+        FIRST,
+        DriveOrder::DeviceFault { device_fault: DeviceFault::Stuck(4), on: true },
+    );
     assert_eq!(rig.command(stick), no_terminal);
     let every = Duration::from_millis(1);
     assert_eq!(
-        rig.command(Command::Bounce { drive: FIRST, index: 4, times: 1, every }),
+        rig.command(Command::Drive(FIRST, DriveOrder::Bounce { index: 4, times: 1, every })),
         no_terminal
     );
-    let bounce = |times, every| Command::Bounce { drive: FIRST, index: 0, times, every };
+    let bounce =
+        |times, every| Command::Drive(FIRST, DriveOrder::Bounce { index: 0, times, every });
     let beyond = [(0, every), (3, Duration::ZERO), (3, Duration::from_nanos(999))];
     for (times, every) in beyond.into_iter().chain([(3, Duration::from_secs(61))]) {
         assert_eq!(rig.command(bounce(times, every)), Err(CommandError::NoBounce), "{every:?}");
     }
-    rig.command(Command::Power { drive: FIRST, on: false }).expect("it has power");
-    let raise = Command::Raise { drive: FIRST, cause: AlarmCause::OverVoltage };
+    rig.command(Command::Drive(FIRST, DriveOrder::Power(false))).expect("it has power");
+    let raise = Command::Drive(FIRST, DriveOrder::Raise(AlarmCause::OverVoltage));
     assert_eq!(rig.command(raise), Err(CommandError::NoPower));
 }
 
@@ -109,7 +115,7 @@ fn an_event_is_one_line() {
     let mut rig = drive("yako-closed-loop");
     let step = "trip\n0.000 unit 1 ready\u{1b}[2J\u{202e}".to_owned();
     let what = "a\rb\u{85}".to_owned();
-    rig.command(Command::Tell(Remark { step, outcome: Outcome::Failed, what })).expect("told");
+    rig.command(LineCommand::Tell(Remark { step, outcome: Outcome::Failed, what })).expect("told");
     let log = rig.log();
     let last = log.lines().last().expect("a line");
     let want = "step trip\\n0.000 unit 1 ready\\u{1b}[2J\\u{202e} failed: a\\rb\\u{85}";
@@ -125,8 +131,12 @@ fn a_move_goes_on_when_it_is_free() {
         rig.ask("01 10 0020 0006 0C 0000 0000 0000 003C 0000 2710");
         rig.ask("01 06 0027 0001");
         rig.advance(Duration::from_secs(2));
-        let block =
-            |on| Command::DeviceFault { drive: FIRST, device_fault: DeviceFault::Blocked, on };
+        let block = |on| {
+            Command::Drive(
+                FIRST,
+                DriveOrder::DeviceFault { device_fault: DeviceFault::Blocked, on },
+            )
+        };
         rig.command(block(true)).expect("it can be");
         rig.advance(Duration::from_millis(800));
         rig.command(block(false)).expect("it can be");
@@ -145,7 +155,7 @@ fn a_drive_without_power_is_not_there_on_tcp_either() {
     let mut bus = drive("yako-closed-loop").fresh_bus();
     let link = bus.open(Framing::Mbap);
     for (on, answers) in [(true, true), (false, false), (true, true)] {
-        bus.command(bus.now(), Command::Power { drive: FIRST, on }).expect("it can be");
+        bus.command(bus.now(), Command::Drive(FIRST, DriveOrder::Power(on))).expect("it can be");
         drain(&mut bus);
         bus.receive(bus.now(), link, &mbap::encode(1, 0xFF, &[3, 0, 6, 0, 1]));
         assert_eq!(!drain(&mut bus).sent.is_empty(), answers, "power {on}");

@@ -1,12 +1,9 @@
 //! What several tests share: transcript files and how they are played, and lines with drives on them.
 
 use crate::expect::{files, read, root};
-use drivemu::bench::{
-    BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, WireSpec, parse,
-};
+use drivemu::bench::{BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, LineBuilder, parse};
 use drivemu::bus::Output;
 use drivemu::event::{Event, What};
-use drivemu::fault::LineBehaviour;
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::testkit::{Rig, transcript};
@@ -121,10 +118,7 @@ pub fn line_of(text: &str, options: &[(&str, &str)], spec: &DeviceSpec) -> Bench
     let model = compiled(text, &choices).unwrap_or_else(|problem| panic!("{problem}"));
     let device = Device::new(model, spec);
     let device = device.unwrap_or_else(|problems| panic!("{}", problems[0].what));
-    let devices = vec![device];
-    let wire = WireSpec::of(&devices, None, None, false);
-    let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    BenchLine { name, port, wire, devices, faults, line_behaviour: LineBehaviour::default() }
+    LineBuilder::new("line", vec![device]).build_unmatched()
 }
 
 /// The model in `text`, compiled once for all tests that ask for it: that takes far longer than they do.
@@ -145,14 +139,6 @@ fn compiled(text: &str, choices: &Choices) -> Result<Arc<Model>, String> {
 pub fn bench_line(text: &str) -> BenchLine {
     let bench = parse(text, &BuiltinLibrary).unwrap_or_else(|problems| panic!("{}", problems[0]));
     bench.lines.into_iter().next().expect("a line")
-}
-
-/// The same line again.
-pub fn again(line: &BenchLine) -> BenchLine {
-    let BenchLine { name, port, wire, devices, faults, line_behaviour } = line;
-    let (name, port, faults) = (name.clone(), port.clone(), faults.clone());
-    let (devices, line_behaviour) = (devices.clone(), line_behaviour.clone());
-    BenchLine { name, port, wire: *wire, devices, faults, line_behaviour }
 }
 
 /// The refusal of the last transaction, if it was one.

@@ -9,7 +9,7 @@ mod rtu;
 mod shared;
 mod tcp;
 
-use crate::kit::{again, bench_line};
+use crate::kit::bench_line;
 use drivemu::bench::{BenchLine, DeviceSpec};
 use drivemu::line::Framing;
 use drivemu::testkit::{Rig, hex};
@@ -36,7 +36,7 @@ pub fn cell(strict: bool) -> Rig {
 ",
         )
     });
-    let mut cell = again(cell);
+    let mut cell = cell.clone();
     cell.wire.strict = strict;
     Rig::line(cell)
 }

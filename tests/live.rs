@@ -3,7 +3,7 @@
 
 use crate::kit::{bench_line, rig};
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{DeviceFault, DriveId};
 use drivemu::testkit::{Rig, hex, live, to_hex};
 use drivemu::vocabulary::AlarmCause;
@@ -71,9 +71,13 @@ async fn values_and_what_was_set_up() {
 #[tokio::test(start_paused = true)]
 async fn an_alarm_and_what_is_wrong_with_the_device() {
     let mut drive = stepper();
-    drive.command(Command::Raise { drive: FIRST, cause: AlarmCause::OverVoltage }).expect("it can");
+    drive
+        .command(Command::Drive(FIRST, DriveOrder::Raise(AlarmCause::OverVoltage)))
+        .expect("it can");
     let device_fault = DeviceFault::Cause(AlarmCause::OverVoltage);
-    drive.command(Command::DeviceFault { drive: FIRST, device_fault, on: true }).expect("it can");
+    drive
+        .command(Command::Drive(FIRST, DriveOrder::DeviceFault { device_fault, on: true }))
+        .expect("it can");
     let before = drive.ask(STATUS);
     let seen = answers(drive, &[(0, STATUS), (10, "01 06 002D 0021"), (20, STATUS)]).await;
     assert_ne!(before, stepper().ask(STATUS), "an alarm shows");
@@ -83,10 +87,12 @@ async fn an_alarm_and_what_is_wrong_with_the_device() {
 #[tokio::test(start_paused = true)]
 async fn a_drive_without_power_and_a_terminal() {
     let mut drive = stepper();
-    drive.command(Command::Power { drive: FIRST, on: false }).expect("it can");
+    drive.command(Command::Drive(FIRST, DriveOrder::Power(false))).expect("it can");
     assert_eq!(answer(drive, STATUS).await, "");
     let mut drive = stepper();
-    drive.command(Command::Terminal { drive: FIRST, index: 0, signal: true }).expect("it can");
+    drive
+        .command(Command::Drive(FIRST, DriveOrder::Terminal { index: 0, signal: true }))
+        .expect("it can");
     let seen = drive.ask("01 03 0008 0001");
     assert_ne!(seen, stepper().ask("01 03 0008 0001"));
     assert_eq!(answer(drive, "01 03 0008 0001").await, seen);

@@ -4,7 +4,7 @@
 use crate::expect::{read, root};
 use crate::kit::{MODELS, rig_of, text_of};
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::model::{RowId, Wiring};
 use drivemu::testkit::{Rig, to_hex};
@@ -262,7 +262,8 @@ fn give(rig: &mut Rig, order: Order) {
         Order::Terminal(_) => {
             let terminals = wiring(rig).input_terminals.as_ref().expect("it has terminals");
             let index = terminals.functions.len() as u8 - 1;
-            rig.command(Command::Terminal { drive: FIRST, index, signal: true }).expect("it can");
+            rig.command(Command::Drive(FIRST, DriveOrder::Terminal { index, signal: true }))
+                .expect("it can");
         }
         Order::Value(row, value) => write(rig, row, value),
     }
@@ -274,7 +275,7 @@ fn get_into(rig: &mut Rig, situation: Situation) -> bool {
     match situation {
         Situation::NotReady => {
             let ready_after = wiring(rig).servo.ready_after;
-            rig.command(Command::PowerCycle { drive: FIRST }).expect("it can");
+            rig.command(Command::Drive(FIRST, DriveOrder::PowerCycle)).expect("it can");
             return !ready_after.is_zero();
         }
         Situation::Disabled => return wiring(rig).input_words.is_some(),
@@ -293,7 +294,7 @@ fn get_into(rig: &mut Rig, situation: Situation) -> bool {
     match situation {
         Situation::Alarm => {
             let cause = wiring(rig).alarms.iter().find(|it| it.resettable).expect("one").cause;
-            rig.command(Command::Raise { drive: FIRST, cause }).expect("it can");
+            rig.command(Command::Drive(FIRST, DriveOrder::Raise(cause))).expect("it can");
             is(rig, Output::Alarm)
         }
         Situation::Homing => {
@@ -335,7 +336,8 @@ fn by_signal(rig: &mut Rig, input: Input) -> bool {
     let Some(index) = index.filter(|index| index + 1 < terminals.functions.len()) else {
         return false;
     };
-    rig.command(Command::Terminal { drive: FIRST, index: index as u8, signal: true }).is_ok()
+    rig.command(Command::Drive(FIRST, DriveOrder::Terminal { index: index as u8, signal: true }))
+        .is_ok()
 }
 
 /// Gives an action, if something can.

@@ -4,7 +4,7 @@ pub mod traffic;
 
 use crate::kit::{MODELS, drain, line_of, rig, text_of};
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::{Bus, Command, LinkId};
+use drivemu::bus::{Bus, Command, DriveOrder, LinkId};
 use drivemu::event::{Change, DriveId, Event, What};
 use drivemu::line::Framing;
 use drivemu::model::{Access, Layer, Located};
@@ -231,10 +231,8 @@ enum Happening {
 /// Happenings with their times in milliseconds, in order.
 fn happenings() -> impl Strategy<Value = Vec<(u64, Happening)>> {
     let drive = DriveId(0);
-    let terminal = (0..9u8, any::<bool>()).prop_map(move |(index, signal)| Command::Terminal {
-        drive,
-        index,
-        signal,
+    let terminal = (0..9u8, any::<bool>()).prop_map(move |(index, signal)| {
+        Command::Drive(drive, DriveOrder::Terminal { index, signal })
     });
     let word = (0x3607..=0x360Au16, 0..8u16).prop_map(|(at, value)| request(1, at, value));
     let hold = (0..4u16).prop_map(|value| request(1, 0x090B, value));
@@ -245,8 +243,8 @@ fn happenings() -> impl Strategy<Value = Vec<(u64, Happening)>> {
         2 => enable.prop_map(Happening::Bytes),
         1 => bytes(1..12).prop_map(Happening::Bytes),
         2 => terminal.prop_map(Happening::Do),
-        1 => Just(Happening::Do(Command::PowerCycle { drive })),
-        1 => Just(Happening::Do(Command::Raise { drive, cause: AlarmCause::Overload })),
+        1 => Just(Happening::Do(Command::Drive(drive, DriveOrder::PowerCycle))),
+        1 => Just(Happening::Do(Command::Drive(drive, DriveOrder::Raise(AlarmCause::Overload)))),
     ];
     prop::collection::vec((0..8_000u64, happening), 1..20).prop_map(|mut all| {
         all.sort_by_key(|(at, _)| *at);
@@ -267,7 +265,7 @@ fn orders() -> impl Strategy<Value = Vec<(u64, Happening)>> {
         3 => setting.prop_map(Happening::Bytes),
         3 => read.prop_map(Happening::Bytes),
         1 => other.prop_map(Happening::Bytes),
-        1 => Just(Happening::Do(Command::PowerCycle { drive })),
+        1 => Just(Happening::Do(Command::Drive(drive, DriveOrder::PowerCycle))),
     ];
     prop::collection::vec((0..8_000u64, happening), 1..30).prop_map(|mut all| {
         all.sort_by_key(|(at, _)| *at);
@@ -321,7 +319,7 @@ fn the_slices_have_something_to_cut() {
         (2, Happening::Bytes(request(1, 0x3607, 2))),
         (3, Happening::Bytes(vec![1, 2, 3, 4])),
     ];
-    happenings.push((8_000, Happening::Do(Command::PowerCycle { drive: DriveId(0) })));
+    happenings.push((8_000, Happening::Do(Command::Drive(DriveId(0), DriveOrder::PowerCycle))));
     let (events, _) = live("hcfa-x", &happenings, &[]);
     let at = |ms| {
         events

@@ -1,8 +1,8 @@
 //! What drives keep over power-off: taken out of one run, put into the next, and counted.
 
-use crate::kit::{Files, MODELS, again, bench_line, drain, rig, rig_of};
+use crate::kit::{Files, MODELS, bench_line, drain, rig, rig_of};
 use drivemu::bench::{self, DeviceSpec, Saved};
-use drivemu::bus::{Command, Output};
+use drivemu::bus::{Command, DriveOrder, Output};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::testkit::{Rig, hex};
 use drivemu::time::{Duration, Instant};
@@ -152,7 +152,7 @@ fn the_factory_values_return_and_the_wear_stays() {
 fn alarms_of_the_past_are_read_back() {
     let mut first = rig("k-series", &[], &DeviceSpec::default());
     let (drive, cause) = (DriveId(0), AlarmCause::Overload);
-    first.command(Command::Raise { drive, cause }).expect("an alarm of the model");
+    first.command(Command::Drive(drive, DriveOrder::Raise(cause))).expect("an alarm of the model");
     let next = rig("k-series", &[], &DeviceSpec::default());
     let mut second = next.with_state(&first.state()).expect("its own state");
     assert_eq!(read(&mut second, "04 00"), read(&mut first, "04 00"));
@@ -172,7 +172,7 @@ fn drives_and_stations_are_told_apart() {
     let cell = bench_line(
         "lines: [{name: cell 1, tcp: '127.0.0.1:0', drives: [{model: k-series}, {model: k-series, unit: 3}]}]",
     );
-    let mut rig = Rig::line(again(&cell)).with_framing(drivemu::line::Framing::Mbap);
+    let mut rig = Rig::line(cell.clone()).with_framing(drivemu::line::Framing::Mbap);
     for (unit, value) in [(1, 11), (2, 22), (4, 44)] {
         rig.send(&drivemu::wire::mbap::encode(0, unit, &[6, 0x01, 0x30, 0, value]));
     }
@@ -335,7 +335,7 @@ fn each_row_that_is_stored_is_read_back() {
 
 fn power_cycle(rig: &mut Rig) {
     let drive = drivemu::event::DriveId(0);
-    rig.command(drivemu::bus::Command::PowerCycle { drive }).expect("there");
+    rig.command(Command::Drive(drive, DriveOrder::PowerCycle)).expect("there");
 }
 
 /// Lines of the log about wear, without their times.

@@ -11,7 +11,7 @@ mod thresholds;
 
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::model::{RowId, Shows, Wiring};
 use drivemu::motion::Machine;
@@ -353,7 +353,7 @@ fn wiring(rig: &Rig) -> &Wiring {
 }
 
 fn raise(rig: &mut Rig, cause: AlarmCause) {
-    rig.command(Command::Raise { drive: FIRST, cause }).expect("an alarm of the model");
+    rig.command(Command::Drive(FIRST, DriveOrder::Raise(cause))).expect("an alarm of the model");
 }
 
 /// Writes one word, and lets the drive start anew if that is what it does.
@@ -404,7 +404,8 @@ fn by_terminal(rig: &mut Rig, input: Input, on: bool) {
         terminals.codes.iter().find(|(_, it)| *it == input).expect("every input has a number").0;
     let row = terminals.functions[2];
     write(rig, row, code);
-    rig.command(Command::Terminal { drive: FIRST, index: 2, signal: on }).expect("a terminal");
+    rig.command(Command::Drive(FIRST, DriveOrder::Terminal { index: 2, signal: on }))
+        .expect("a terminal");
 }
 
 fn by_word(rig: &mut Rig, input: Input, on: bool) {

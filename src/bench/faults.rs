@@ -1,13 +1,13 @@
 //! Fault rules of a line: read for the drives that are on it.
 
-use super::{BenchLine, PortSpec};
+use super::BenchLine;
 use crate::fault::{self, FaultContext, FaultSet, Faults, LineBehaviour, NoRow};
 use crate::problem::{Problem, suggest};
 use crate::wire::Span;
 
 impl FaultContext for BenchLine {
     fn is_tcp(&self) -> bool {
-        matches!(self.port, PortSpec::Tcp(_))
+        self.port.is_tcp()
     }
 
     fn line_behaviour(&self) -> &LineBehaviour {

@@ -79,13 +79,3 @@ pub(super) fn strangers(
             .push(Problem::value(path, what).advise("list units that no drive on this line has"));
     }
 }
-
-impl PortSpec {
-    /// How replies are paced on such a port.
-    pub fn pacing(&self) -> Pacing {
-        match self {
-            Self::Serial(_) => Pacing::Port,
-            Self::Pty(_) | Self::Tcp(_) | Self::RtuOverTcp(_) => Pacing::Line,
-        }
-    }
-}

@@ -5,6 +5,7 @@
 
 mod device;
 mod faults;
+mod line;
 mod line_behaviour;
 mod machine;
 mod match_line;
@@ -14,14 +15,13 @@ mod state;
 mod wire_spec;
 
 pub use device::{Device, DeviceSpec, OverrideKey, SpecProblem};
+pub use line::{BenchLine, LineBuilder, Mismatch, PortSpec};
 pub use machine::{MachineProblem, machine};
 pub use match_line::match_line;
 pub use parse::{kind_of, parse, parse_saved};
 pub use state::{Saved, StateFile};
 pub use wire_spec::{PATIENT_GAP, WireSpec};
 
-use crate::bus::Bus;
-use crate::fault::{FaultRule, LineBehaviour};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use std::sync::Arc;
@@ -75,73 +75,4 @@ pub struct Bench {
     pub seed: Option<u64>,
     /// The lines, in order.
     pub lines: Vec<BenchLine>,
-}
-
-/// One line of a bench.
-#[derive(Debug)]
-pub struct BenchLine {
-    /// Its name in the log.
-    pub name: String,
-    /// Where masters reach it.
-    pub port: PortSpec,
-    /// How the line is set.
-    pub wire: WireSpec,
-    /// What is on it.
-    pub devices: Vec<Device>,
-    /// Fault rules, in order.
-    pub faults: Vec<FaultRule>,
-    /// What the line always does.
-    pub line_behaviour: LineBehaviour,
-}
-
-/// Where masters reach a line.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum PortSpec {
-    /// A pseudo-terminal of our own, with a symlink to it if a path is given.
-    Pty(Option<String>),
-    /// A serial device.
-    Serial(String),
-    /// Modbus TCP.
-    Tcp(String),
-    /// Serial frames over TCP.
-    RtuOverTcp(String),
-}
-
-impl PortSpec {
-    /// The key of a bench file that says it.
-    pub fn key(&self) -> &'static str {
-        match self {
-            Self::Pty(_) => "pty",
-            Self::Serial(_) => "serial",
-            Self::Tcp(_) => "tcp",
-            Self::RtuOverTcp(_) => "rtu_over_tcp",
-        }
-    }
-
-    /// The path or address that it takes, if it asks for one.
-    pub fn place(&self) -> Option<&str> {
-        match self {
-            Self::Pty(link) => link.as_deref(),
-            Self::Serial(place) | Self::Tcp(place) | Self::RtuOverTcp(place) => Some(place),
-        }
-    }
-}
-
-impl BenchLine {
-    /// A bus with all drives of this line on it, switched on. On a serial line they hear what is said in
-    /// the line's mode; on Modbus TCP there is none. What its fault rules draw depends on `seed`.
-    pub fn bus(&self, seed: u64) -> Bus {
-        let mut bus = Bus::new();
-        bus.set_faults(self.fault_set(seed));
-        bus.set_line_behaviour(self.line_behaviour.clone());
-        if !matches!(self.port, PortSpec::Tcp(_)) {
-            bus.set_mode(self.wire.mode);
-        }
-        for (i, device) in self.devices.iter().enumerate() {
-            for setup in &device.setups {
-                bus.add(device.model.clone(), setup, i as u16);
-            }
-        }
-        bus
-    }
 }

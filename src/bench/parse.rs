@@ -3,8 +3,8 @@
 use super::line_behaviour::{line_behaviour, strangers};
 use super::raw::{KEYS, RawBenchDrive, RawBenchLine, RawPacing};
 use super::{
-    Bench, BenchLine, Device, DeviceSpec, Library, MachineProblem, OverrideKey, PortSpec, Saved,
-    SpecProblem, WireSpec, machine, match_line,
+    Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, MachineProblem, Mismatch,
+    OverrideKey, PortSpec, Saved, SpecProblem, machine,
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
@@ -277,7 +277,7 @@ impl BenchReader<'_> {
         name: String,
         port: PortSpec,
         raw: &RawBenchLine,
-        mut devices: Vec<Device>,
+        devices: Vec<Device>,
         path: &Path,
     ) -> Option<BenchLine> {
         let settings = match raw.settings.as_deref().map(str::parse::<Settings>).transpose() {
@@ -287,21 +287,21 @@ impl BenchReader<'_> {
                 return None;
             }
         };
-        let wire = WireSpec::of(&devices, settings, raw.ascii, raw.strict);
-        let wire = WireSpec { match_baud: raw.match_baud, ..wire };
-        let told = settings.is_some() || raw.ascii.is_some();
-        if !matches!(port, PortSpec::Tcp(_)) {
-            for (i, device) in devices.iter_mut().enumerate() {
-                if let Err(what) = match_line(device, wire.mode, told) {
-                    let path = path.key("drives").index(i).key("model");
-                    let advice = "choose `settings` that all drives on the line support";
-                    self.problems.push(Problem::value(path, what).advise(advice));
-                }
-            }
-        }
         let line_behaviour = line_behaviour(raw, &port, path, &mut self.problems);
         strangers(&line_behaviour, &devices, path, &mut self.problems);
-        let mut line = BenchLine { name, port, wire, devices, faults: Vec::new(), line_behaviour };
+        let builder = LineBuilder::new(name, devices)
+            .port(port)
+            .settings(settings)
+            .ascii(raw.ascii)
+            .strict(raw.strict)
+            .match_baud(raw.match_baud)
+            .behaviour(line_behaviour);
+        let (mut line, mismatches) = builder.build();
+        for Mismatch { device, what } in mismatches {
+            let path = path.key("drives").index(device).key("model");
+            let advice = "choose `settings` that all drives on the line support";
+            self.problems.push(Problem::value(path, what).advise(advice));
+        }
         self.faults(raw, &mut line, path);
         Some(line)
     }

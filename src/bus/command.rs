@@ -4,7 +4,7 @@ use super::Bus;
 use crate::drive::Drive;
 use crate::event::{DeviceFault, DriveId, Remark, RemarkId, What};
 use crate::fault::{FaultRule, LineBehaviour};
-use crate::time::Duration;
+use crate::time::{Duration, Instant};
 use crate::vocabulary::{AlarmCause, Named};
 use std::ops::RangeInclusive;
 use thiserror::Error;
@@ -14,38 +14,41 @@ use thiserror::Error;
 pub const BETWEEN_EDGES: RangeInclusive<Duration> =
     Duration::from_micros(1)..=Duration::from_secs(60);
 
-/// Something to do to a drive, or to the line.
+/// Something to do from outside: by a scenario, a test, a control port. Whoever gives it, it goes through
+/// [`Bus::command`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Command {
+    /// To the line.
+    Line(LineCommand),
+    /// To one drive.
+    Drive(DriveId, DriveOrder),
+}
+
+/// Something to do to a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LineCommand {
+    /// Put a fault rule behind those of the line.
+    AddFault(FaultRule),
+    /// Take the fault rule of that name off the line. What it holds back still leaves.
+    RemoveFault(String),
+    /// Give the line this behaviour from now on, in place of what it has.
+    SetBehaviour(LineBehaviour),
+    /// Tell of a step of a scenario.
+    Tell(Remark),
+}
+
+/// Something to do to a drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DriveOrder {
     /// Put a signal on an input terminal, or take it off.
     Terminal {
-        /// Which drive.
-        drive: DriveId,
         /// Which terminal, from 0.
         index: u8,
         /// Carries a signal?
         signal: bool,
     },
-    /// Trip with an alarm.
-    Raise {
-        /// Which drive.
-        drive: DriveId,
-        /// Why.
-        cause: AlarmCause,
-    },
-    /// Something is wrong with the device from now on, or no longer.
-    DeviceFault {
-        /// Which drive.
-        drive: DriveId,
-        /// What.
-        device_fault: DeviceFault,
-        /// From now on?
-        on: bool,
-    },
     /// Have the contact on an input terminal bounce.
     Bounce {
-        /// Which drive.
-        drive: DriveId,
         /// Which terminal, from 0.
         index: u8,
         /// So many times it leaves its level and comes back; 1 at least.
@@ -53,26 +56,25 @@ pub enum Command {
         /// From one edge to the next, one of [`BETWEEN_EDGES`]; the first comes at once.
         every: Duration,
     },
-    /// Power on or off; all stations of the device with it. What is there already stays.
-    Power {
-        /// Which drive.
-        drive: DriveId,
-        /// On?
+    /// Trip with an alarm.
+    Raise(AlarmCause),
+    /// Something is wrong with the device from now on, or no longer.
+    DeviceFault {
+        /// What.
+        device_fault: DeviceFault,
+        /// From now on?
         on: bool,
     },
+    /// Power on or off; all stations of the device with it. What is there already stays.
+    Power(bool),
     /// Power off and on; all stations of the device with it.
-    PowerCycle {
-        /// Which drive.
-        drive: DriveId,
-    },
-    /// Put a fault rule behind those of the line.
-    AddFault(FaultRule),
-    /// Take the fault rule of that name off the line. What it holds back still leaves.
-    RemoveFault(String),
-    /// Give the line this line behaviour from now on, in place of those that it has.
-    SetLineBehaviour(LineBehaviour),
-    /// Tell of a step of a scenario.
-    Tell(Remark),
+    PowerCycle,
+}
+
+impl From<LineCommand> for Command {
+    fn from(command: LineCommand) -> Self {
+        Self::Line(command)
+    }
 }
 
 /// The answer to a command that was carried out.
@@ -133,37 +135,46 @@ fn terminal(drive: &Drive, index: u8) -> Result<(), CommandError> {
 }
 
 impl Bus {
-    pub(super) fn carry_out(&mut self, command: Command) -> Result<Reply, CommandError> {
-        let id = match command {
-            Command::Terminal { drive, .. }
-            | Command::Raise { drive, .. }
-            | Command::DeviceFault { drive, .. }
-            | Command::Bounce { drive, .. }
-            | Command::Power { drive, .. }
-            | Command::PowerCycle { drive } => drive,
-            Command::AddFault(rule) => return self.add_fault(rule),
-            Command::RemoveFault(name) => return self.remove_fault(name),
-            Command::SetLineBehaviour(line_behaviour) => {
-                self.set_line_behaviour(line_behaviour);
-                return Ok(Reply::Done);
-            }
-            Command::Tell(remark) => return Ok(self.remember(remark)),
+    /// Carries out a command from outside the line at `now`.
+    ///
+    /// # Errors
+    /// If there is no such drive, terminal, alarm or rule; nothing has happened then, but time.
+    pub fn command(&mut self, now: Instant, command: Command) -> Result<Reply, CommandError> {
+        self.advance_to(now);
+        let reply = match command {
+            Command::Line(command) => self.line_command(command),
+            Command::Drive(drive, order) => self.drive_order(drive, order),
         };
+        (0..self.drives.len() as u16).for_each(|i| self.after_drive(DriveId(i)));
+        reply
+    }
+
+    fn line_command(&mut self, command: LineCommand) -> Result<Reply, CommandError> {
+        match command {
+            LineCommand::AddFault(rule) => return self.add_fault(rule),
+            LineCommand::RemoveFault(name) => return self.remove_fault(name),
+            LineCommand::SetBehaviour(line_behaviour) => self.set_line_behaviour(line_behaviour),
+            LineCommand::Tell(remark) => self.remember(remark),
+        }
+        Ok(Reply::Done)
+    }
+
+    fn drive_order(&mut self, id: DriveId, order: DriveOrder) -> Result<Reply, CommandError> {
         let now = self.now;
         let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
-        match command {
-            Command::Terminal { index, signal, .. } => {
+        match order {
+            DriveOrder::Terminal { index, signal } => {
                 terminal(drive, index)?;
                 drive.set_terminal(now, index, signal);
             }
-            Command::Bounce { index, times, every, .. } => {
+            DriveOrder::Bounce { index, times, every } => {
                 terminal(drive, index)?;
                 if times == 0 || !BETWEEN_EDGES.contains(&every) {
                     return Err(CommandError::NoBounce);
                 }
                 drive.bounce_terminal(now, index, times, every);
             }
-            Command::DeviceFault { device_fault, on, .. } => {
+            DriveOrder::DeviceFault { device_fault, on } => {
                 if let DeviceFault::Stuck(index) = device_fault {
                     terminal(drive, index)?;
                 }
@@ -173,7 +184,7 @@ impl Bus {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }
-            Command::Raise { cause, .. } => {
+            DriveOrder::Raise(cause) => {
                 if !drive.is_powered() {
                     return Err(CommandError::NoPower);
                 }
@@ -181,23 +192,16 @@ impl Bus {
                     return Err(CommandError::NoAlarm(cause.name()));
                 }
             }
-            Command::Power { on: true, .. } if drive.is_powered() => {}
-            Command::Power { on: true, .. } | Command::PowerCycle { .. } => {
+            DriveOrder::Power(true) if drive.is_powered() => {}
+            DriveOrder::Power(true) | DriveOrder::PowerCycle => {
                 self.switch(id, Drive::power_cycle);
             }
-            Command::Power { on: false, .. } => {
-                self.switch(id, Drive::power_off);
-            }
-            // These are not for a drive and were carried out above.
-            Command::AddFault(_)
-            | Command::RemoveFault(_)
-            | Command::SetLineBehaviour(_)
-            | Command::Tell(_) => {}
+            DriveOrder::Power(false) => self.switch(id, Drive::power_off),
         }
         Ok(Reply::Done)
     }
 
-    fn remember(&mut self, remark: Remark) -> Reply {
+    fn remember(&mut self, remark: Remark) {
         // A step that repeats says the same again and again.
         let known = self.remarks.iter().position(|it| *it == remark);
         let number = known.unwrap_or_else(|| {
@@ -205,7 +209,6 @@ impl Bus {
             self.remarks.len() - 1
         });
         self.emit(What::Step(RemarkId(number as u32)));
-        Reply::Done
     }
 
     fn add_fault(&mut self, rule: FaultRule) -> Result<Reply, CommandError> {
@@ -219,6 +222,7 @@ impl Bus {
             false => Err(CommandError::FaultTaken(name)),
         }
     }
+
     fn remove_fault(&mut self, name: String) -> Result<Reply, CommandError> {
         match self.faults.remove(&name) {
             true => Ok(Reply::Done),

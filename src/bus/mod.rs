@@ -19,7 +19,7 @@ mod request_counts;
 mod transmit;
 mod transmit_queue;
 
-pub use command::{BETWEEN_EDGES, Command, CommandError, Reply};
+pub use command::{BETWEEN_EDGES, Command, CommandError, DriveOrder, LineCommand, Reply};
 pub use output::{LinkId, Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
 
@@ -216,17 +216,6 @@ impl Bus {
             }
             self.listen(link, self.now);
         }
-    }
-
-    /// Carries out a command from outside the line at `now`.
-    ///
-    /// # Errors
-    /// If there is no such drive, terminal or alarm; nothing has happened then, but time.
-    pub fn command(&mut self, now: Instant, command: Command) -> Result<Reply, CommandError> {
-        self.advance_to(now);
-        let reply = self.carry_out(command);
-        (0..self.drives.len() as u16).for_each(|i| self.after_drive(DriveId(i)));
-        reply
     }
 
     /// Lets time pass up to `now`: whatever is due until then happens, each thing at its own instant.

@@ -4,15 +4,15 @@ use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
 use super::state::StateArg;
 use super::{CliError, FAILED, INVALID, NO_PORT};
 use crate::bench::{
-    Bench, BenchLine, Device, DeviceSpec, Library, OverrideKey, PortSpec, Saved, SpecProblem,
-    WireSpec, kind_of, match_line, parse_saved,
+    Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, OverrideKey, PortSpec,
+    Saved, SpecProblem, kind_of, parse_saved,
 };
 use crate::fault::{LineBehaviour, Pacing};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use crate::problem::render::render;
 use crate::scenario::{self, Verdict};
-use crate::serial::{Mode, Parity, Settings};
+use crate::serial::{Parity, Settings};
 use crate::server::{
     Destination, Diagnostics, Ended, FileLibrary, Judged, LogFormat, PathClaims, Play, RunError,
     RunOptions, Store, diagnose, is_path, plain, read_text, run as run_bench,
@@ -283,30 +283,33 @@ fn line(
     let name = "line";
     saved.give(name, 0, &mut device);
     let port = port(args);
-    let ascii = args.ascii.then_some(true);
-    let own = WireSpec::of(std::slice::from_ref(&device), None, ascii, false);
-    let mode = Mode { settings: settings(args, own.mode.settings), ..own.mode };
-    let wire = WireSpec { mode, match_baud: args.match_baud, ..own };
     if args.match_baud && !matches!(port, PortSpec::Pty(_)) {
         let text = "--match-baud applies to a pseudo-terminal only";
-        return Err(CliError::invalid(text));
-    }
-    if !matches!(port, PortSpec::Tcp(_)) {
-        let told = args.ascii || mode != own.mode;
-        match_line(&mut device, wire.mode, told).map_err(CliError::invalid)?;
-    } else if args.ascii || mode != own.mode {
-        return Err(CliError { code: INVALID, text: "Modbus TCP has no serial settings".into() });
-    } else if args.pacing == PacingArg::Line {
-        let text = "--pacing line does not apply to Modbus TCP, which has no character times";
         return Err(CliError::invalid(text));
     }
     let pacing = match args.pacing {
         PacingArg::Ideal => Pacing::Ideal,
         PacingArg::Line => port.pacing(),
     };
-    let line_behaviour = LineBehaviour { pacing, ..LineBehaviour::default() };
-    let (name, devices, faults) = (name.into(), vec![device], Vec::new());
-    Ok(BenchLine { name, port, wire, devices, faults, line_behaviour })
+    let builder = LineBuilder::new(name, vec![device])
+        .port(port)
+        .ascii(args.ascii.then_some(true))
+        .match_baud(args.match_baud)
+        .behaviour(LineBehaviour { pacing, ..LineBehaviour::default() });
+    let own = builder.wire().mode.settings;
+    let told = Some(settings(args, own)).filter(|told| *told != own);
+    let (line, mismatches) = builder.settings(told).build();
+    if line.port.is_tcp() && (args.ascii || told.is_some()) {
+        return Err(CliError { code: INVALID, text: "Modbus TCP has no serial settings".into() });
+    }
+    if line.port.is_tcp() && args.pacing == PacingArg::Line {
+        let text = "--pacing line does not apply to Modbus TCP, which has no character times";
+        return Err(CliError::invalid(text));
+    }
+    match mismatches.into_iter().next() {
+        Some(Mismatch { what, .. }) => Err(CliError::invalid(what)),
+        None => Ok(line),
+    }
 }
 
 /// What on the command line asked for it.

@@ -3,7 +3,7 @@
 //! Without a bench only what needs no drives is looked at. A key that could change nothing is a mistake.
 
 use super::line::ScenarioLine;
-use super::order::{DriveOrder, NoOrder};
+use super::order::{NoOrder, Order};
 use super::raw::{
     KEYS, RawCondition, RawCount, RawLevel, RawRegister, RawScenarioStep, RawStepRepeat,
 };
@@ -242,10 +242,10 @@ impl ScenarioReader<'_> {
         for (i, text) in raw.orders.iter().enumerate() {
             let path = path.key("do").index(i);
             let line = line.and_then(|line| self.sites.as_mut()?.get_mut(line));
-            let read = DriveOrder::parse(text).and_then(|order| match line {
-                Some(line) => line.commands(&order, drive),
-                None => Ok(Vec::new()),
-            });
+            let read = match line {
+                Some(line) => line.commands(text, drive),
+                None => Order::check(text).map(|()| Vec::new()),
+            };
             match read {
                 Ok(more) => commands.extend(more),
                 Err(NoOrder { what, advice }) => {

@@ -5,7 +5,7 @@
 //! at which it is going to hold by itself; nothing is polled.
 
 use super::step::{ScenarioStep, Trigger};
-use crate::bus::{Bus, Command, RequestCounts};
+use crate::bus::{Bus, LineCommand, RequestCounts};
 use crate::event::{Outcome, Remark};
 use crate::time::{Duration, Instant};
 
@@ -235,6 +235,6 @@ impl Director {
 fn tell(bus: &mut Bus, step: &ScenarioStep, outcome: Outcome, what: String) {
     let remark = Remark { step: step.name.clone(), outcome, what };
     // Only drives and rules refuse commands.
-    let told = bus.command(bus.now(), Command::Tell(remark));
+    let told = bus.command(bus.now(), LineCommand::Tell(remark).into());
     debug_assert!(told.is_ok());
 }

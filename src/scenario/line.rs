@@ -1,8 +1,8 @@
 //! One line as a scenario is read for it: who is on it, and which fault rules stand there by now.
 
-use super::order::{DriveOrder, NoOrder};
+use super::order::{NoOrder, Order};
 use crate::bench::BenchLine;
-use crate::bus::{Bus, Command};
+use crate::bus::{Bus, Command, LineCommand};
 use crate::event::DriveId;
 use crate::fault::{FaultSet, LineBehaviour};
 use crate::model::Model;
@@ -35,16 +35,12 @@ impl<'a> ScenarioLine<'a> {
         self.bus.drive(drive).model()
     }
 
-    /// The commands that carry out an order. A preset has several rules.
-    pub(super) fn commands(
-        &mut self,
-        order: &DriveOrder,
-        drive: DriveId,
-    ) -> Result<Vec<Command>, NoOrder> {
-        match order {
-            DriveOrder::Fault(spec) => self.add(spec),
-            DriveOrder::NoFault(name) => self.remove(name),
-            _ => Ok(order.command(drive, self.model(drive))?.into_iter().collect()),
+    /// The commands that carry out the order in `text`. A preset has several rules.
+    pub(super) fn commands(&mut self, text: &str, drive: DriveId) -> Result<Vec<Command>, NoOrder> {
+        match Order::parse(text, self.model(drive))? {
+            Order::Drive(order) => Ok(vec![Command::Drive(drive, order)]),
+            Order::Fault(spec) => self.add(&spec),
+            Order::NoFault(name) => self.remove(&name),
         }
     }
 
@@ -67,12 +63,12 @@ impl<'a> ScenarioLine<'a> {
             return Err(NoOrder { what: most.what, advice: None });
         }
         self.rules.extend(rules.iter().map(|rule| rule.name.clone()));
-        let mut commands: Vec<_> = rules.into_iter().map(Command::AddFault).collect();
+        let mut commands: Vec<_> = rules.into_iter().map(LineCommand::AddFault).collect();
         if !line_behaviour.is_empty() {
             self.line_behaviour = self.line_behaviour.clone().and(line_behaviour);
-            commands.push(Command::SetLineBehaviour(self.line_behaviour.clone()));
+            commands.push(LineCommand::SetBehaviour(self.line_behaviour.clone()));
         }
-        Ok(commands)
+        Ok(commands.into_iter().map(Command::Line).collect())
     }
 
     fn remove(&mut self, name: &str) -> Result<Vec<Command>, NoOrder> {
@@ -85,6 +81,6 @@ impl<'a> ScenarioLine<'a> {
             let what = format!("no fault rule `{name}` on this line at that point");
             return Err(NoOrder { what, advice });
         }
-        Ok(gone.into_iter().map(Command::RemoveFault).collect())
+        Ok(gone.into_iter().map(|name| LineCommand::RemoveFault(name).into()).collect())
     }
 }

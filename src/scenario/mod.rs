@@ -14,7 +14,7 @@ mod step;
 pub use compile::{check, parse};
 pub use director::{Director, Verdict};
 pub use junit::junit;
-pub use order::{DriveOrder, NoOrder};
+pub use order::{NoOrder, Order};
 pub use step::{Condition, ScenarioStep, Subject, Test, Trigger};
 
 use crate::time::Instant;

@@ -2,12 +2,13 @@
 //!
 //! Scenarios and transcripts speak this language.
 
-use crate::bus::{BETWEEN_EDGES, Command};
-use crate::event::{DeviceFault, DriveId};
+use crate::bus::{BETWEEN_EDGES, DriveOrder};
+use crate::event::DeviceFault;
 use crate::model::Model;
 use crate::problem::suggest;
-use crate::time::{Duration, parse_duration};
+use crate::time::parse_duration;
 use crate::vocabulary::{AlarmCause, Named};
+use std::fmt;
 
 /// What can be written.
 const FORMS: [&str; 13] = [
@@ -26,26 +27,14 @@ const FORMS: [&str; 13] = [
     "no_fault NAME",
 ];
 
-/// Something to do, with terminals by name.
+/// Something to do, as a line of text says it for one drive.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum DriveOrder {
-    /// Put a signal on a terminal, or take it off.
-    Terminal(String, bool),
-    /// Have a terminal keep its level, or no longer.
-    Stick(String, bool),
-    /// Have a terminal leave its level and come back so many times, with this time from edge to edge.
-    Bounce(String, u16, Duration),
-    /// Trip with an alarm.
-    Raise(AlarmCause),
-    /// Something is wrong from now on, or no longer.
-    DeviceFault(DeviceFault, bool),
-    /// Power on or off.
-    Power(bool),
-    /// Power off and on.
-    PowerCycle,
-    /// Put a fault rule in compact form on the line.
+pub enum Order {
+    /// To that drive.
+    Drive(DriveOrder),
+    /// Put a fault rule in compact form on its line.
     Fault(String),
-    /// Take the rule of that name off the line.
+    /// Take the rule of that name off its line.
     NoFault(String),
 }
 
@@ -58,76 +47,79 @@ pub struct NoOrder {
     pub advice: Option<String>,
 }
 
-impl DriveOrder {
-    /// Reads one line.
+impl fmt::Display for NoOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.advice {
+            Some(advice) => write!(f, "{} ({advice})", self.what),
+            None => f.write_str(&self.what),
+        }
+    }
+}
+
+impl Order {
+    /// Reads one line, which is for a drive of `model`.
     ///
     /// # Errors
-    /// If it is none of the forms.
-    pub fn parse(text: &str) -> Result<Self, NoOrder> {
-        let words: Vec<&str> = text.split_whitespace().collect();
-        Ok(match words.as_slice() {
-            ["terminal", name, level] => Self::Terminal((*name).into(), is_on(level)?),
-            ["stick", name, level] => Self::Stick((*name).into(), is_on(level)?),
-            ["bounce", name, times, every] => {
-                let count = times.parse().ok().filter(|count| *count > 0);
-                let count = count.ok_or_else(|| {
-                    no(format!("a contact bounces 1 to 65535 times, not `{times}`"))
-                })?;
-                let between = parse_duration(every).filter(|it| BETWEEN_EDGES.contains(it));
-                let between = between.ok_or_else(|| NoOrder {
-                    what: format!("the time between edges must be 1us to 1min, not `{every}`"),
-                    advice: Some("write `bounce NAME 3 5ms`".into()),
-                })?;
-                Self::Bounce((*name).into(), count, between)
+    /// If it is none of the forms, or the model has no such terminal or no such alarm.
+    pub fn parse(text: &str, model: &Model) -> Result<Self, NoOrder> {
+        let order = read(text, &|name| terminal(model, name))?;
+        match order {
+            Self::Drive(
+                DriveOrder::Raise(cause)
+                | DriveOrder::DeviceFault { device_fault: DeviceFault::Cause(cause), .. },
+            ) if model.wiring.alarm(cause).is_none() => {
+                Err(no(format!("the model has no alarm for `{}`", cause.name())))
             }
-            ["raise", cause] => Self::Raise(cause_of(cause)?),
-            ["hold", cause, level] => {
-                Self::DeviceFault(DeviceFault::Cause(cause_of(cause)?), is_on(level)?)
-            }
-            ["block", level] => Self::DeviceFault(DeviceFault::Blocked, is_on(level)?),
-            ["encoder", level] => Self::DeviceFault(DeviceFault::EncoderLost, !is_on(level)?),
-            ["freeze", level] => Self::DeviceFault(DeviceFault::Frozen, is_on(level)?),
-            ["power", level] => Self::Power(is_on(level)?),
-            ["power_cycle"] => Self::PowerCycle,
-            // A value may have blanks inside.
-            ["fault", spec @ ..] if !spec.is_empty() => Self::Fault(spec.join(" ")),
-            ["no_fault", name] => Self::NoFault((*name).into()),
-            [verb, ..] => return Err(no_form(verb)),
-            [] => return Err(no_form("")),
-        })
+            order => Ok(order),
+        }
     }
 
-    /// The command that it is for `drive`, which is of `model`; `None` where it is about the line.
+    /// Is it one of the forms, whatever drive it is for?
     ///
     /// # Errors
-    /// If the model has no such terminal or no such alarm.
-    pub fn command(&self, drive: DriveId, model: &Model) -> Result<Option<Command>, NoOrder> {
-        Ok(Some(match self {
-            Self::Terminal(name, signal) => {
-                Command::Terminal { drive, index: terminal(model, name)?, signal: *signal }
-            }
-            Self::Stick(name, on) => {
-                let device_fault = DeviceFault::Stuck(terminal(model, name)?);
-                Command::DeviceFault { drive, device_fault, on: *on }
-            }
-            Self::Bounce(name, times, every) => {
-                let index = terminal(model, name)?;
-                Command::Bounce { drive, index, times: *times, every: *every }
-            }
-            Self::Raise(cause) | Self::DeviceFault(DeviceFault::Cause(cause), _)
-                if model.wiring.alarm(*cause).is_none() =>
-            {
-                return Err(no(format!("the model has no alarm for `{}`", cause.name())));
-            }
-            Self::Raise(cause) => Command::Raise { drive, cause: *cause },
-            Self::DeviceFault(device_fault, on) => {
-                Command::DeviceFault { drive, device_fault: *device_fault, on: *on }
-            }
-            Self::Power(on) => Command::Power { drive, on: *on },
-            Self::PowerCycle => Command::PowerCycle { drive },
-            Self::Fault(_) | Self::NoFault(_) => return Ok(None),
-        }))
+    /// If it is none.
+    pub fn check(text: &str) -> Result<(), NoOrder> {
+        read(text, &|_| Ok(0)).map(|_| ())
     }
+}
+
+/// Reads one line; `terminal` finds an input terminal by its name.
+fn read(text: &str, terminal: &dyn Fn(&str) -> Result<u8, NoOrder>) -> Result<Order, NoOrder> {
+    let device_fault = |device_fault, on| DriveOrder::DeviceFault { device_fault, on };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    Ok(Order::Drive(match words.as_slice() {
+        ["terminal", name, level] => {
+            let signal = is_on(level)?;
+            DriveOrder::Terminal { index: terminal(name)?, signal }
+        }
+        ["stick", name, level] => {
+            let on = is_on(level)?;
+            device_fault(DeviceFault::Stuck(terminal(name)?), on)
+        }
+        ["bounce", name, times, every] => {
+            let count = times.parse().ok().filter(|count| *count > 0);
+            let times = count
+                .ok_or_else(|| no(format!("a contact bounces 1 to 65535 times, not `{times}`")))?;
+            let between = parse_duration(every).filter(|it| BETWEEN_EDGES.contains(it));
+            let every = between.ok_or_else(|| NoOrder {
+                what: format!("the time between edges must be 1us to 1min, not `{every}`"),
+                advice: Some("write `bounce NAME 3 5ms`".into()),
+            })?;
+            DriveOrder::Bounce { index: terminal(name)?, times, every }
+        }
+        ["raise", cause] => DriveOrder::Raise(cause_of(cause)?),
+        ["hold", cause, level] => device_fault(DeviceFault::Cause(cause_of(cause)?), is_on(level)?),
+        ["block", level] => device_fault(DeviceFault::Blocked, is_on(level)?),
+        ["encoder", level] => device_fault(DeviceFault::EncoderLost, !is_on(level)?),
+        ["freeze", level] => device_fault(DeviceFault::Frozen, is_on(level)?),
+        ["power", level] => DriveOrder::Power(is_on(level)?),
+        ["power_cycle"] => DriveOrder::PowerCycle,
+        // A value may have blanks inside.
+        ["fault", spec @ ..] if !spec.is_empty() => return Ok(Order::Fault(spec.join(" "))),
+        ["no_fault", name] => return Ok(Order::NoFault((*name).into())),
+        [verb, ..] => return Err(no_form(verb)),
+        [] => return Err(no_form("")),
+    }))
 }
 
 fn no(what: impl Into<String>) -> NoOrder {

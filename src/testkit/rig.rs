@@ -1,17 +1,17 @@
 //! One line with drives and a clock that moves only when told to.
 
 use crate::bench::{
-    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, PortSpec, Saved, StateFile,
+    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, LineBuilder, Saved, StateFile,
     WireSpec,
 };
-use crate::bus::{Bus, Command, CommandError, LinkId, Output};
+use crate::bus::{Bus, Command, CommandError, LineCommand, LinkId, Output};
 use crate::drive::Drive;
 use crate::event::{DriveId, Event};
 use crate::fault::LineBehaviour;
 use crate::line::Framing;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
-use crate::scenario::{self, Director, Verdict};
+use crate::scenario::{self, Director, Order, Verdict};
 use crate::time::{Duration, Instant};
 use crate::wire::{crc16, rtu};
 use std::sync::Arc;
@@ -73,11 +73,7 @@ impl Rig {
             };
             problems.into_iter().map(problem).collect::<Vec<_>>()
         })?;
-        let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
-        let (name, port) = ("line".into(), PortSpec::Pty(None));
-        let (devices, faults, line_behaviour) =
-            (vec![device], Vec::new(), LineBehaviour::default());
-        Ok(Self::line(BenchLine { name, port, wire, devices, faults, line_behaviour }))
+        Ok(Self::line(LineBuilder::new("line", vec![device]).build_unmatched()))
     }
 
     /// The first line of a bench file. Its port is not opened.
@@ -156,7 +152,7 @@ impl Rig {
         Ok(self.switched_on())
     }
 
-    /// The same line with other line behaviour. On a rig in use: [`Command::SetLineBehaviour`].
+    /// The same line with other line behaviour. On a rig in use: [`LineCommand::SetBehaviour`].
     ///
     /// # Panics
     /// If the rig is in use.
@@ -313,21 +309,36 @@ impl Rig {
             self.line.fault(spec, &taken).map_err(|problems| problems[0].to_string())?;
         if !fault_set.line_behaviour.is_empty() {
             let line_behaviour = self.bus.line_behaviour().clone().and(fault_set.line_behaviour);
-            self.command(Command::SetLineBehaviour(line_behaviour))
+            self.command(LineCommand::SetBehaviour(line_behaviour))
                 .map_err(|error| error.to_string())?;
         }
         fault_set.rules.into_iter().try_for_each(|rule| {
-            self.command(Command::AddFault(rule)).map_err(|error| error.to_string())
+            self.command(LineCommand::AddFault(rule)).map_err(|error| error.to_string())
         })
+    }
+
+    /// Gives the first drive, or its line, an order as scenarios write it: `terminal I1 on`, `raise overload`,
+    /// `fault lose_reply:every=10`.
+    ///
+    /// # Errors
+    /// What is wrong with the order, or why it was not carried out.
+    pub fn order(&mut self, text: &str) -> Result<(), String> {
+        let order = Order::parse(text, self.drive().model()).map_err(|no| no.to_string())?;
+        let command = match order {
+            Order::Drive(order) => Command::Drive(DriveId(0), order),
+            Order::Fault(spec) => return self.add_fault(&spec),
+            Order::NoFault(name) => LineCommand::RemoveFault(name).into(),
+        };
+        self.command(command).map_err(|error| error.to_string())
     }
 
     /// Does something to the drives or to the faults.
     ///
     /// # Errors
     /// If there is no such drive, terminal, alarm or rule.
-    pub fn command(&mut self, command: Command) -> Result<(), CommandError> {
+    pub fn command(&mut self, command: impl Into<Command>) -> Result<(), CommandError> {
         self.used = true;
-        let reply = self.bus.command(self.now, command);
+        let reply = self.bus.command(self.now, command.into());
         self.drain();
         reply.map(|_| ())
     }

@@ -5,7 +5,7 @@
 #![allow(clippy::disallowed_methods, clippy::print_stdout, missing_docs)] // A benchmark measures the wall.
 
 use drivemu::bench::{Device, DeviceSpec, machine, raw::RawMachine};
-use drivemu::bus::{Bus, Command, Output};
+use drivemu::bus::{Bus, Command, DriveOrder, Output};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::line::Framing;
 use drivemu::model::builtin::Builtin;
@@ -100,7 +100,7 @@ fn run(hour: &Hour, powered: bool) -> usize {
         patience: Some(Duration::from_millis(20)),
     });
     if !powered {
-        let trip = Command::Raise { drive: DriveId(0), cause: AlarmCause::OverVoltage };
+        let trip = Command::Drive(DriveId(0), DriveOrder::Raise(AlarmCause::OverVoltage));
         bus.command(Instant::ZERO, trip).expect("an alarm of the model");
     }
     let mut homed = 0;

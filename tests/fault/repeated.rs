@@ -1,7 +1,7 @@
 //! Orders that come twice because nobody heard the first answer: `repeated_command`.
 
 use super::{SILENCE, acme, ask, drive_of, frame};
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{Change, DriveId, Event, What};
 use drivemu::fault::FaultKind;
 use drivemu::testkit::Rig;
@@ -178,7 +178,8 @@ fn each_action_adds_up_or_does_not() {
             let encoder = action == Action::EncoderReset;
             let cause = if encoder { AlarmCause::Encoder } else { AlarmCause::Overload };
             let drive = DriveId(0);
-            rig.command(Command::Raise { drive, cause }).expect("an alarm of the model");
+            rig.command(Command::Drive(drive, DriveOrder::Raise(cause)))
+                .expect("an alarm of the model");
         }
         rig.add_fault("lose_reply:count=1").expect("a good rule");
         let order = order(&rig, action);

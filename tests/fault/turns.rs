@@ -1,7 +1,7 @@
 //! Whom a rule hits: conditions, turns, chance, order, and rules that come and go.
 
 use super::{ANSWER, READ, SILENCE, WRITE, acme, ask, drive, drive_of, effects, frame, hits};
-use drivemu::bus::{Command, CommandError};
+use drivemu::bus::{CommandError, LineCommand};
 use drivemu::event::FaultEffect;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
@@ -100,7 +100,7 @@ fn rules_come_and_go() {
     assert_eq!(rig.bus().faults().names().collect::<Vec<_>>(), ["lose_reply", "lose_reply-2"]);
     assert_eq!(ask(&mut rig, READ), SILENCE);
     assert_eq!(hits(&rig, "lose_reply"), 1);
-    let remove = |rig: &mut Rig| rig.command(Command::RemoveFault("lose_reply".into()));
+    let remove = |rig: &mut Rig| rig.command(LineCommand::RemoveFault("lose_reply".into()));
     assert_eq!(remove(&mut rig), Ok(()));
     assert_eq!(rig.bus().faults().hits("lose_reply"), None);
     assert_eq!(ask(&mut rig, READ), frame(ANSWER));
@@ -115,11 +115,11 @@ fn commands_are_refused() {
     let line = crate::kit::line_of(crate::kit::text_of("hcfa-x"), &[], &Default::default());
     let rule = || line.fault("bad_crc:name=x", &[]).expect("a good rule").rules.remove(0);
     let mut rig = drive(&["busy:name=x"]);
-    let taken = rig.command(Command::AddFault(rule())).expect_err("the name is taken");
+    let taken = rig.command(LineCommand::AddFault(rule())).expect_err("the name is taken");
     assert_eq!(taken.to_string(), "duplicate fault rule `x` on this line");
     // A bus that was never told how its line talks is Modbus TCP.
     let mut bus = drivemu::bus::Bus::new();
-    let idle = bus.command(bus.now(), Command::AddFault(rule())).expect_err("no CRC");
+    let idle = bus.command(bus.now(), LineCommand::AddFault(rule()).into()).expect_err("no CRC");
     assert_eq!(idle.to_string(), "`x` has no effect here: Modbus TCP frames have no checksum");
 }
 

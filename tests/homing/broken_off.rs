@@ -2,7 +2,7 @@
 
 use super::oracle::Hcfa;
 use super::scene::{Scene, Setting, hcfa_x, k_series, yako};
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{Change, DriveId, What};
 use drivemu::motion::{Machine, Zone};
 use drivemu::testkit::Rig;
@@ -80,7 +80,8 @@ fn every_alarm_stops_a_homing_as_it_is_said_to() {
         for alarm in alarms {
             let mut rig = homing(&setting);
             let before = rig.drive().quantity(Quantity::PositionActual);
-            rig.command(Command::Raise { drive: DRIVE, cause: alarm.cause }).expect("it has power");
+            rig.command(Command::Drive(DRIVE, DriveOrder::Raise(alarm.cause)))
+                .expect("it has power");
             let brakes = brakes(model, alarm.cause);
             let told = format!("{model} {:?}\n{}", alarm.cause, rig.log());
             let [alarms, enabled, moving] =
@@ -103,7 +104,7 @@ fn power_that_goes_leaves_no_origin() {
     for setting in settings() {
         let mut rig = homing(&setting);
         for on in [false, true] {
-            rig.command(Command::Power { drive: DRIVE, on }).expect("the other way round");
+            rig.command(Command::Drive(DRIVE, DriveOrder::Power(on))).expect("the other way round");
         }
         rig.advance(Duration::from_secs(2));
         let outputs = [Output::Moving, Output::HomeDone, Output::InPosition];

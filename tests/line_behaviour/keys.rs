@@ -69,7 +69,7 @@ fn habits_come_and_go() {
     rig.add_fault("usb_adapter").expect("a preset");
     assert!(rig.send(&frame(READ)).is_empty());
     assert_eq!(rig.advance(16 * MS), frame(ANSWER));
-    let none = drivemu::bus::Command::SetLineBehaviour(LineBehaviour::default());
+    let none = drivemu::bus::LineCommand::SetBehaviour(LineBehaviour::default());
     rig.command(none).expect("done");
     assert_eq!(rig.send(&frame(READ)), frame(ANSWER));
     let rig = crate::kit::rig("hcfa-x", &[], &Default::default());

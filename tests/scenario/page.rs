@@ -5,7 +5,7 @@ use crate::documents::fenced;
 use crate::expect::{read, root};
 use drivemu::bench::{BuiltinLibrary, parse};
 use drivemu::problem::render::render;
-use drivemu::scenario::{self, DriveOrder, Verdict};
+use drivemu::scenario::{self, Order, Verdict};
 use drivemu::testkit::Rig;
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ fn the_orders_of_the_page_are_known() {
     assert!(rows.len() > 10, "{rows:?}");
     for row in rows {
         let (order, _) = row.split_once('`').expect("an order");
-        assert!(DriveOrder::parse(order).is_ok(), "{order}");
+        assert!(Order::check(order).is_ok(), "{order}");
     }
 }
 

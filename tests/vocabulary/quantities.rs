@@ -2,7 +2,7 @@
 
 use super::{FIRST, acme, by_bit, raise, row_showing, running, segment, underway};
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::Command;
+use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::DeviceFault;
 use drivemu::model::Shows;
 use drivemu::testkit::Rig;
@@ -86,6 +86,6 @@ fn each_quantity_shows() {
 /// Has a cause stand, or go.
 fn suffers(rig: &mut Rig, cause: AlarmCause, on: bool) {
     let device_fault = DeviceFault::Cause(cause);
-    rig.command(Command::DeviceFault { drive: FIRST, device_fault, on })
+    rig.command(Command::Drive(FIRST, DriveOrder::DeviceFault { device_fault, on }))
         .expect("an alarm of the model");
 }

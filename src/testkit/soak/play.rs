@@ -10,7 +10,7 @@ use super::scene::Scene;
 use super::step::{FrameDamage, SoakStep};
 use crate::bank::Bank;
 use crate::bench::WireSpec;
-use crate::bus::{Bus, Command, LinkId, Output};
+use crate::bus::{Bus, Command, LineCommand, LinkId, Output};
 use crate::event::{DriveId, Event, What};
 use crate::model::Located;
 use crate::time::{Duration, Instant};
@@ -102,9 +102,9 @@ impl<'a> SoakPlayer<'a> {
                 // A rule that can do nothing here is refused, and nothing has happened then.
                 let fault_set = self.scene.line.fault(spec, &taken).unwrap_or_default();
                 let mut rules = fault_set.rules.into_iter();
-                rules.try_for_each(|rule| self.command(Command::AddFault(rule)))
+                rules.try_for_each(|rule| self.command(LineCommand::AddFault(rule).into()))
             }
-            SoakStep::NoFault(name) => self.command(Command::RemoveFault(name.clone())),
+            SoakStep::NoFault(name) => self.command(LineCommand::RemoveFault(name.clone()).into()),
         }
     }
 

@@ -4,7 +4,7 @@
 use super::draw::Draws;
 use super::master::{one, setting};
 use super::step::{FrameDamage, SoakStep};
-use crate::bus::Command;
+use crate::bus::{Command, DriveOrder};
 use crate::event::DriveId;
 use crate::model::Model;
 use crate::time::Duration;
@@ -78,7 +78,9 @@ impl RoutineAxis<'_> {
         let index = terminals.functions.iter().position(|row| init(row) == Some(input));
         let set = |index: usize| {
             let (drive, index) = (self.drive, index as u8);
-            let put = |signal| SoakStep::Do(Command::Terminal { drive, index, signal });
+            let put = |signal| {
+                SoakStep::Do(Command::Drive(drive, DriveOrder::Terminal { index, signal }))
+            };
             [put(false), put(true)]
         };
         index.map(set).into_iter().flatten().collect()

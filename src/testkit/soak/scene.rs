@@ -1,9 +1,8 @@
 //! The line of a soak test: its framing, the drives on it, what stands along their axes.
 
 use super::draw::Draws;
-use crate::bench::{BenchLine, Device, DeviceSpec, PortSpec, WireSpec, match_line};
+use crate::bench::{BenchLine, Device, DeviceSpec, LineBuilder, PortSpec, WireSpec};
 use crate::bus::Bus;
-use crate::fault::LineBehaviour;
 use crate::line::Framing;
 use crate::model::Model;
 use crate::motion::{Index, Machine, Zone};
@@ -36,11 +35,17 @@ impl Scene {
         let ascii = ascii(&devices).filter(|_| !tcp && draws.one_in(2));
         let settings = ascii.map(|mode| mode.settings);
         let strict = draws.one_in(3);
-        let wire = WireSpec::of(&devices, settings, Some(ascii.is_some()), strict);
-        devices.retain_mut(|device| match_line(device, wire.mode, true).is_ok());
         let port = if tcp { PortSpec::Tcp(String::new()) } else { PortSpec::Pty(None) };
-        let (name, faults, line_behaviour) = ("soak".into(), Vec::new(), LineBehaviour::default());
-        Self { line: BenchLine { name, port, wire, devices, faults, line_behaviour }, seed }
+        let builder = LineBuilder::new("soak", devices)
+            .port(port)
+            .settings(settings)
+            .ascii(Some(ascii.is_some()))
+            .strict(strict);
+        let (mut line, mismatches) = builder.build();
+        for mismatch in mismatches.iter().rev() {
+            line.devices.remove(mismatch.device);
+        }
+        Self { line, seed }
     }
 
     /// The unit address of the first station of device number `at`, as the line begins.
@@ -50,7 +55,7 @@ impl Scene {
 
     /// Does it carry Modbus TCP?
     pub fn is_tcp(&self) -> bool {
-        matches!(self.line.port, PortSpec::Tcp(_))
+        self.line.port.is_tcp()
     }
 
     /// How frames are told apart on a line that is set to `wire`.

@@ -5,7 +5,7 @@ use super::draw::Draws;
 use super::master;
 use super::routine::{RoutineAxis, routine};
 use super::scene::Scene;
-use crate::bus::Command;
+use crate::bus::{Command, DriveOrder};
 use crate::event::DriveId;
 use crate::fault::FaultKind;
 use crate::time::Duration;
@@ -79,9 +79,9 @@ fn step(scene: &Scene, n: usize, draws: &mut Draws) -> SoakStep {
         28..36 => SoakStep::Do(terminal(scene, draws)),
         36 => {
             let cause = *draws.pick(AlarmCause::ALL).expect("there are some");
-            SoakStep::Do(Command::Raise { drive: drive(scene, draws), cause })
+            SoakStep::Do(Command::Drive(drive(scene, draws), DriveOrder::Raise(cause)))
         }
-        37 => SoakStep::Do(Command::PowerCycle { drive: drive(scene, draws) }),
+        37 => SoakStep::Do(Command::Drive(drive(scene, draws), DriveOrder::PowerCycle)),
         38..44 => fault(scene, n, draws),
         44..50 => SoakStep::NoFault(rule(draws.between(0, n as u64))),
         50..54 => SoakStep::Noise(draws.bytes(60)),
@@ -109,7 +109,7 @@ fn drive(scene: &Scene, draws: &mut Draws) -> DriveId {
 
 fn terminal(scene: &Scene, draws: &mut Draws) -> Command {
     let (index, signal) = (draws.between(0, 9) as u8, draws.one_in(2));
-    Command::Terminal { drive: drive(scene, draws), index, signal }
+    Command::Drive(drive(scene, draws), DriveOrder::Terminal { index, signal })
 }
 
 fn rule(n: u64) -> String {

@@ -2,14 +2,8 @@
 
 use super::TranscriptFailure;
 use super::script::{Check, DriveLine, Script, TranscriptStep};
-use crate::bench::{
-    BenchLine, Device, DeviceSpec, Library, PortSpec, WireSpec, machine, match_line,
-};
-use crate::bus::Command;
+use crate::bench::{BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, machine};
 use crate::drive::Drive;
-use crate::event::DriveId;
-use crate::fault::LineBehaviour;
-use crate::scenario::DriveOrder;
 use crate::testkit::{Rig, to_hex};
 use crate::units::parse_integer;
 use crate::vocabulary::{Named, Output, Quantity};
@@ -38,14 +32,14 @@ fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, TranscriptF
             device(drive, library).map_err(|what| TranscriptFailure { line: drive.line, what })?,
         );
     }
-    let wire = WireSpec::of(&devices, script.settings, script.ascii, script.strict);
-    for (device, drive) in devices.iter_mut().zip(&script.drives) {
-        let matched = match_line(device, wire.mode, true);
-        matched.map_err(|what| TranscriptFailure { line: drive.line, what })?;
+    let builder = LineBuilder::new("line", devices)
+        .settings(script.settings)
+        .ascii(script.ascii)
+        .strict(script.strict);
+    let (mut line, mismatches) = builder.build();
+    if let Some(Mismatch { device, what }) = mismatches.into_iter().next() {
+        return Err(TranscriptFailure { line: script.drives[device].line, what });
     }
-    let (name, port, faults) = ("line".into(), PortSpec::Pty(None), Vec::new());
-    let line_behaviour = LineBehaviour::default();
-    let mut line = BenchLine { name, port, wire, devices, faults, line_behaviour };
     for (number, spec) in &script.faults {
         let added = line.add_fault(spec);
         added.map_err(|problems| TranscriptFailure {
@@ -143,18 +137,7 @@ impl TranscriptPlayer {
     }
 
     fn act(&mut self, words: &[String]) -> Result<(), String> {
-        let order = DriveOrder::parse(&words.join(" ")).map_err(|no| match no.advice {
-            Some(advice) => format!("{} ({advice})", no.what),
-            None => no.what,
-        })?;
-        let command = order.command(DriveId(0), self.rig.drive().model());
-        let command = match (command.map_err(|no| no.what)?, order) {
-            (Some(command), _) => command,
-            (None, DriveOrder::Fault(spec)) => return self.rig.add_fault(&spec),
-            (None, DriveOrder::NoFault(name)) => Command::RemoveFault(name),
-            (None, _) => return Ok(()),
-        };
-        self.rig.command(command).map_err(|error| error.to_string())
+        self.rig.order(&words.join(" "))
     }
 
     fn take_answer(&mut self) -> Result<Vec<u8>, String> {

@@ -5,7 +5,7 @@
 mod common;
 
 use drivemu::bench::{BenchLine, parse};
-use drivemu::bus::{Command, Output};
+use drivemu::bus::{LineCommand, Output};
 use drivemu::time::Duration;
 use drivemu::wire::rtu;
 use libfuzzer_sys::fuzz_target;
@@ -25,9 +25,9 @@ fuzz_target!(|input: &[u8]| {
     };
     let mut bus = LINE.bus(1);
     let link = bus.open(LINE.wire.framing(1.0));
-    let rules = fault_set.rules.into_iter().map(Command::AddFault);
-    for command in rules.chain([Command::SetLineBehaviour(fault_set.line_behaviour)]) {
-        bus.command(bus.now(), command).expect("a fault that was read is possible");
+    let rules = fault_set.rules.into_iter().map(LineCommand::AddFault);
+    for command in rules.chain([LineCommand::SetBehaviour(fault_set.line_behaviour)]) {
+        bus.command(bus.now(), command.into()).expect("a fault that was read is possible");
     }
     for pdu in [&[3, 3, 4, 0, 1][..], &[6, 3, 4, 0, 7], &[16, 8, 6, 0, 2, 4, 0, 0, 0, 1], &[0x2B]] {
         let now = bus.now() + Duration::from_secs(1);
