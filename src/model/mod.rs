@@ -59,8 +59,8 @@ pub struct Station {
 impl Model {
     /// The row that a newcomer would read first: where the axis stands, or else any row that may be read.
     pub fn showcase(&self) -> Option<&Row> {
-        let position = Shows::Quantity(crate::vocabulary::Quantity::PositionActual);
-        let found = self.row_showing(&position).map(|id| self.map.row(id));
+        let position = self.wiring.row_of(crate::vocabulary::Quantity::PositionActual);
+        let found = position.map(|id| self.map.row(id));
         found.or_else(|| {
             let mut rows = self.map.rows().map(|(_, row)| row);
             rows.find(|row| row.access != Access::Write)
@@ -69,6 +69,9 @@ impl Model {
 
     /// The row that shows it.
     pub fn row_showing(&self, shows: &Shows) -> Option<RowId> {
+        if let Shows::Quantity(quantity) = shows {
+            return self.wiring.row_of(*quantity);
+        }
         let mut rows = self.map.rows().map(|(id, _)| id);
         rows.find(|id| self.wiring.shows(*id) == Some(shows))
     }

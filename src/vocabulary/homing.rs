@@ -82,7 +82,7 @@ impl Steps {
         Self { steps: all }
     }
 
-    /// HomingStep `index`, from 0.
+    /// Step `index`, from 0.
     pub fn get(&self, index: usize) -> Option<HomingStep> {
         self.steps.get(index).copied().flatten()
     }

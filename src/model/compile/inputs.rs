@@ -1,9 +1,8 @@
 //! Signals into the drive: terminals, words and bits that carry them.
 
-use super::functions::{self, Codes, RawCodes, not_simulated, place_of_bit, split};
 use super::names::Names;
 use super::terminals::{
-    Layout, hold, monitor, positions, terminals as read_terminals, words as read_words,
+    self, Codes, Layout, RawCodes, hold, monitor, not_simulated, place_of_bit, positions, split,
 };
 use super::uses::{Uses, has_bit, writable};
 use crate::model::raw::RawInputs;
@@ -22,7 +21,7 @@ pub(super) fn path() -> Path {
 pub(super) fn codes(raw: &RawInputs, absent: &mut NotSimulated, names: &mut Names) -> Codes<Input> {
     let used = raw.terminals.is_some() || raw.words.is_some();
     let codes = RawCodes { codes: &raw.codes, terminals: raw.terminals.as_ref(), used };
-    functions::codes(&codes, &path(), signal, absent, names)
+    terminals::codes(&codes, &path(), signal, absent, names)
 }
 
 fn signal(names: &mut Names, name: &str, path: &Path) -> Option<Input> {
@@ -54,7 +53,7 @@ pub(super) fn terminals(
     let (raw, path) = (raw.terminals.as_ref()?, path().key("terminals"));
     monitor(raw, Shows::InputTerminals, &path, uses, names);
     let signals = split(codes, &mut absent.input_codes);
-    let terminals = read_terminals(raw, signals, &path, names);
+    let terminals = terminals::compile(raw, signals, &path, names);
     for row in terminals.functions.iter().copied().chain(terminals.normally_closed) {
         uses.react(row, Reaction::Inputs, &path, At::Key, names);
     }
@@ -71,7 +70,7 @@ pub(super) fn words(
 ) -> Option<InputWords> {
     let by_terminals = raw.terminals.is_some();
     let (raw, path) = (raw.words.as_ref()?, path().key("words"));
-    let (rows, enabled_by) = read_words(&raw.registers, &raw.enabled_by, &path, names);
+    let (rows, enabled_by) = terminals::words(&raw.registers, &raw.enabled_by, &path, names);
     for (i, row) in rows.iter().enumerate() {
         let path = path.key("registers").index(i);
         writable(*row, &path, At::Value, names);

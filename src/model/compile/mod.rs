@@ -7,10 +7,8 @@
 
 mod alarms;
 mod axis;
-mod chain;
 mod commands;
 mod expand;
-mod functions;
 mod homing;
 mod inputs;
 mod limits;
@@ -23,8 +21,6 @@ mod rows;
 mod segments;
 mod steps;
 mod terminals;
-mod thresholds;
-mod unused_rows;
 mod uses;
 mod wired;
 
@@ -73,7 +69,7 @@ pub(super) fn compile(
         outputs::terminals(outputs, &output_codes, &mut uses, &mut absent, names);
     let output_words = outputs::words(outputs, &output_codes, &mut uses, &mut absent, names);
     outputs::bits(outputs, &mut uses, names);
-    functions::digits(&mut absent, names);
+    terminals::digits(&mut absent, names);
     line::reactions(&raw.line, &mut uses, names);
     let timeout = line::timeout(&raw.line, &mut uses, names);
     let alarm_history = alarms::history(&raw, &mut uses, names);
@@ -104,19 +100,20 @@ pub(super) fn compile(
     wiring.axis = axis::compile(raw.axis.as_ref(), wired, &numbers, names);
 
     // Whether everything goes together.
-    thresholds::check(&numbers, wired, names);
+    quantities::check_thresholds(&numbers, wired, names);
     motions::check(raw.axis.is_some(), wired, &numbers, homing, names);
     homing::check_starters(homing, wired, names);
     alarms::check(&raw, &wiring.alarms, wired, &numbers, names);
     quantities::check_taken(&raw, &wiring.axis, names);
     if wiring.axis.position_gain.is_none() {
-        thresholds::without_deviation(&numbers, wired, names);
+        quantities::without_deviation(&numbers, wired, names);
     }
     wiring.thresholds = numbers.thresholds;
+    wiring.quantity_rows = uses.quantity_rows();
     wiring.shows = uses.shows;
     wiring.reactions = uses.reactions;
     let line = line?;
-    unused_rows::check(&line, &wiring, names);
+    uses::check_unused(&line, &wiring, names);
     Some(Model {
         vendor: raw.model.vendor,
         name: raw.model.name,

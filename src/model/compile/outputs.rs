@@ -1,10 +1,7 @@
 //! Signals out of the drive: terminals, words and bits that show them.
 
-use super::functions::{self, Codes, RawCodes, split};
 use super::names::Names;
-use super::terminals::{
-    Layout, monitor, positions, terminals as read_terminals, words as read_words,
-};
+use super::terminals::{self, Codes, Layout, RawCodes, monitor, positions, split};
 use super::uses::{Uses, has_bit, writable};
 use super::wired::Wired;
 use crate::model::raw::RawOutputs;
@@ -24,7 +21,7 @@ pub(super) fn codes(
 ) -> Codes<Shown> {
     let used = raw.terminals.is_some() || raw.words.is_some();
     let codes = RawCodes { codes: &raw.codes, terminals: raw.terminals.as_ref(), used };
-    functions::codes(&codes, &path(), shown, absent, names)
+    terminals::codes(&codes, &path(), shown, absent, names)
 }
 
 /// A signal, or `not` and a signal.
@@ -48,7 +45,7 @@ pub(super) fn terminals(
     let (raw, path) = (raw.terminals.as_ref()?, path().key("terminals"));
     monitor(raw, Shows::OutputTerminals, &path, uses, names);
     let signals = split(codes, &mut absent.output_codes);
-    Some(read_terminals(raw, signals, &path, names))
+    Some(terminals::compile(raw, signals, &path, names))
 }
 
 /// Words that a master reads in place of terminals.
@@ -61,7 +58,7 @@ pub(super) fn words(
 ) -> Option<OutputWords> {
     let by_terminals = raw.terminals.is_some();
     let (raw, path) = (raw.words.as_ref()?, path().key("words"));
-    let (rows, enabled_by) = read_words(&raw.registers, &raw.enabled_by, &path, names);
+    let (rows, enabled_by) = terminals::words(&raw.registers, &raw.enabled_by, &path, names);
     for (i, row) in rows.iter().enumerate() {
         let path = path.key("registers").index(i);
         uses.show(*row, Shows::OutputWord(i as u16), &path, At::Value, names);

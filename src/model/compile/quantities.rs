@@ -1,12 +1,14 @@
-//! Numbers by role: rows that show what the drive computes, and what its motions and outputs go by.
+//! Numbers by role: rows that show what the drive computes, what its motions and outputs go by, and whether outputs
+//! and their numbers go together.
 
 use super::names::{Names, nearest_or_all};
 use super::uses::Uses;
+use super::wired::Wired;
 use crate::model::raw::{RawModel, RawQuantity};
 use crate::model::{Applies, AxisWiring, Number, RowId, SettingRow, Shows};
 use crate::problem::{At, Path, Problem};
 use crate::units::{Dimension, Unit};
-use crate::vocabulary::{Named, Quantity, Setting, Taken, Threshold};
+use crate::vocabulary::{Named, Output, Quantity, Setting, Taken, Threshold};
 
 /// The numbers that motions and outputs go by.
 pub(super) struct Numbers {
@@ -156,4 +158,67 @@ fn dimension(row: RowId, name: &str, want: &[Dimension], path: &Path, names: &mu
     let what = format!("`{name}` {what}, but {} {have}", row.id);
     let advice = format!("{advice}, or wire another row");
     names.report(Problem::value(path.clone(), what).advise(advice));
+}
+
+/// An output with the number that it goes by, and whether it can do without.
+const OUTPUT_NUMBERS: [(Output, Threshold, bool); 20] = [
+    (Output::ZeroSpeed, Threshold::ZeroSpeed, true),
+    (Output::Turning, Threshold::TurningSpeed, false),
+    (Output::SpeedReached, Threshold::ReachedSpeed, false),
+    (Output::SpeedReached, Threshold::ReachedWindow, false),
+    (Output::SpeedAgrees, Threshold::AgreesWindow, false),
+    (Output::Arrived, Threshold::AgreesWindow, false),
+    (Output::Arrived, Threshold::PositionWindow, true),
+    (Output::Arrived, Threshold::PositionSettle, true),
+    (Output::Settled, Threshold::PositionWindow, true),
+    (Output::Settled, Threshold::PositionSettle, true),
+    (Output::InPosition, Threshold::PositionWindow, true),
+    (Output::InPosition, Threshold::PositionSettle, true),
+    (Output::CommandPresent, Threshold::CommandSpeed, true),
+    (Output::InterruptActive, Threshold::PositionWindow, true),
+    (Output::InterruptActive, Threshold::PositionSettle, true),
+    (Output::InterruptDone, Threshold::PositionWindow, true),
+    (Output::InterruptDone, Threshold::PositionSettle, true),
+    (Output::InterruptDone, Threshold::InterruptDoneTime, false),
+    (Output::Coincides, Threshold::CoincidesWindow, false),
+    (Output::Near, Threshold::NearWindow, false),
+];
+
+/// Outputs have their numbers, and numbers their outputs.
+pub(super) fn check_thresholds(numbers: &Numbers, wired: &Wired, names: &mut Names) {
+    for (output, threshold, optional) in OUTPUT_NUMBERS {
+        if wired.shows(output) && !numbers.has_threshold(threshold) && !optional {
+            let (output, name) = (output.name(), threshold.name());
+            let what = format!("`{output}` is shown, but `{name}` is missing");
+            let problem = Problem::key(Path::root().key("signals").key("outputs"), what);
+            let advice = format!("add `{name}: ROW`, or a number with its unit, to `quantities`");
+            names.report(problem.advise(advice));
+        }
+    }
+    let of_outputs = numbers.thresholds.iter().map(|(it, _)| *it);
+    for threshold in of_outputs.filter(|it| *it != Threshold::Deviation) {
+        let mut uses = OUTPUT_NUMBERS.iter().filter(|(_, it, _)| *it == threshold);
+        if !uses.any(|(output, ..)| wired.shows(*output)) {
+            let name = threshold.name();
+            let what = format!("`{name}` has no effect: no output that uses it is shown");
+            let problem = Problem::key(path(name), what);
+            names.report(problem.advise("show one, or remove it"));
+        }
+    }
+}
+
+/// What shows a deviation, or goes by it, where the axis is never behind its command.
+pub(super) fn without_deviation(numbers: &Numbers, wired: &Wired, names: &mut Names) {
+    let signals = Path::root().key("signals");
+    let outputs = [Output::Coincides, Output::Near].into_iter();
+    let outputs = outputs.filter(|it| wired.shows(*it)).map(|it| (it.name(), signals.clone()));
+    let quantity = |it: Quantity| (wired.shows_quantity(it), it.name());
+    let threshold = |it: Threshold| (numbers.has_threshold(it), it.name());
+    let shown = [quantity(Quantity::ErrorFollowing), threshold(Threshold::PositionWindow)];
+    let shown = shown.into_iter().filter(|it| it.0).map(|(_, name)| (name, path(name)));
+    for (name, path) in outputs.chain(shown) {
+        let what = format!("`{name}` has no effect: the axis never lags behind its command");
+        let problem = Problem::key(path, what);
+        names.report(problem.advise("give `axis` a `position_gain`, or remove it"));
+    }
 }

@@ -22,7 +22,7 @@ pub use signals::{
 
 use super::RowId;
 use crate::time::Duration;
-use crate::vocabulary::{AlarmCause, Input, Threshold};
+use crate::vocabulary::{AlarmCause, Input, Quantity, Threshold};
 
 /// What a model is wired to. Lists are in the order of the file, and short.
 #[derive(Debug, Default)]
@@ -45,6 +45,8 @@ pub struct Wiring {
     pub output_terminals: Option<Terminals<Shown>>,
     /// What rows show, by row; `None` for a row that holds what was written.
     pub shows: Vec<Option<Shows>>,
+    /// The first row that shows each quantity, by its place in the catalogue.
+    pub(super) quantity_rows: Vec<Option<RowId>>,
     /// Output words.
     pub output_words: Option<OutputWords>,
     /// The numbers that outputs go by.
@@ -85,6 +87,11 @@ impl Wiring {
     /// What `row` shows, or `None` if it holds what was written.
     pub fn shows(&self, row: RowId) -> Option<&Shows> {
         self.shows[usize::from(row.0)].as_ref()
+    }
+
+    /// The first row that shows `quantity`.
+    pub fn row_of(&self, quantity: Quantity) -> Option<RowId> {
+        self.quantity_rows[quantity as usize]
     }
 
     /// What a write to `row` sets off.
