@@ -30,3 +30,4 @@ mod status;
 mod tidy;
 mod transcripts;
 mod vocabulary;
+mod wakes;

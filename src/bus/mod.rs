@@ -23,7 +23,7 @@ pub use command::{BETWEEN_EDGES, Command, CommandError, DriveOrder, LineCommand,
 pub use output::{LinkId, Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
 
-use crate::drive::{Drive, Setup};
+use crate::drive::{Drive, Setup, View};
 use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
 use crate::fault::{Faults, LineBehaviour};
 use crate::line::{Framing, Line, Units};
@@ -32,7 +32,7 @@ use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::{BROADCAST, Frame};
 use chatter::ChatterState;
-use deadlines::Deadlines;
+use deadlines::{Deadlines, WakeTrace};
 use repeat_detector::RepeatDetector;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, VecDeque};
@@ -63,6 +63,7 @@ pub struct Bus {
     units: Units,
     by_unit: [Option<DriveId>; 256],
     deadlines: Deadlines,
+    wakes: WakeTrace,
     faults: Faults,
     line_behaviour: LineBehaviour,
     /// The timer of the adapter in front of the master, if there is one.
@@ -102,6 +103,7 @@ impl Bus {
             units: Units::new(),
             by_unit: [None; 256],
             deadlines: Deadlines::default(),
+            wakes: WakeTrace::default(),
             faults: Faults::default(),
             line_behaviour: LineBehaviour::default(),
             adapter: None,
@@ -224,6 +226,11 @@ impl Bus {
         while let Some(wake) = self.poll_at().filter(|wake| wake.at <= now) {
             self.now = self.now.max(wake.at);
             match wake.reason {
+                // The drive says by itself what has woken it.
+                WakeReason::Drive(..) => {}
+                _ => self.wakes.note(wake),
+            }
+            match wake.reason {
                 WakeReason::Silence(link) => self.listen(link, self.now),
                 WakeReason::Through(_) => {
                     let through = self.leaving.take_first();
@@ -237,7 +244,7 @@ impl Bus {
                     self.move_line();
                 }
                 WakeReason::Chatter => self.let_others_speak(),
-                WakeReason::Drive(id) => {
+                WakeReason::Drive(id, _) => {
                     self.drives[usize::from(id.0)].advance_to(self.now);
                     self.after_drive(id);
                 }
@@ -246,20 +253,23 @@ impl Bus {
         self.now = self.now.max(now);
     }
 
-    /// Brings each drive's clock up to the bus's. For those who look at drives from outside: a drive that
-    /// nothing happens to stays at the time of its last request, where a moving axis was elsewhere.
-    pub fn catch_up(&mut self) {
-        let now = self.now;
-        self.drives.iter_mut().for_each(|drive| drive.advance_to(now));
+    /// One drive as it is now.
+    pub fn view(&self, id: DriveId) -> View<'_> {
+        self.drive(id).at(self.now)
     }
 
     /// As [`Drive::next_time_when`].
     pub fn next_time_when(
-        &mut self,
+        &self,
         id: DriveId,
-        side: impl Fn(&Drive) -> Ordering,
+        side: impl Fn(View<'_>) -> Ordering,
     ) -> Option<Instant> {
-        self.drives[usize::from(id.0)].next_time_when(side)
+        self.drive(id).next_time_when(self.now, side)
+    }
+
+    /// The last wake-ups, the latest one last: for the message of a test that fails.
+    pub fn wakes(&self) -> impl ExactSizeIterator<Item = &Wake> {
+        self.wakes.iter()
     }
 
     /// What was told of a step.
@@ -300,8 +310,8 @@ impl Bus {
         let bytes = self.leaving.first().map(through);
         let replies = self.queue.timed.first().map(reply);
         let others = self.chatter.as_ref().map(others);
-        let drives =
-            self.deadlines.first().map(|(at, id)| Wake { at, reason: WakeReason::Drive(id) });
+        let drive = |(at, id, timer)| Wake { at, reason: WakeReason::Drive(id, timer) };
+        let drives = self.deadlines.first().map(drive);
         let replies = bytes.into_iter().chain(replies);
         silences.chain(replies).chain(others).chain(drives).min_by_key(|wake| wake.at)
     }
@@ -323,6 +333,9 @@ impl Bus {
         if self.drives[usize::from(id.0)].take_restart() {
             self.switch(id, Drive::power_cycle);
         }
+        while let Some(timer) = self.drives[usize::from(id.0)].poll_woken() {
+            self.wakes.note(Wake { at: self.now, reason: WakeReason::Drive(id, timer) });
+        }
         let mut moved = false;
         while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
             moved |= matches!(
@@ -336,7 +349,7 @@ impl Bus {
             self.follow_drives();
             self.readdress();
         }
-        self.deadlines.set(id, self.drives[usize::from(id.0)].deadline());
+        self.deadlines.set(id, self.drives[usize::from(id.0)].next_timer());
     }
 
     /// Switches all stations of `id`'s device: they share their power.

@@ -1,9 +1,11 @@
 //! What leaves a bus, and when it wants to be woken.
 
+use crate::drive::Timer;
 use crate::event::{DriveId, Event};
 use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::Frame;
+use std::fmt;
 
 /// A link onto a bus: the serial line, or one TCP client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,6 +53,24 @@ pub enum WakeReason {
     Reply(LinkId),
     /// The other masters on the line speak.
     Chatter,
-    /// Something will happen in that drive.
-    Drive(DriveId),
+    /// Something will happen in that drive, the first of what it waits for.
+    Drive(DriveId, Timer),
+}
+
+impl fmt::Display for Wake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}  {}", self.at, self.reason)
+    }
+}
+
+impl fmt::Display for WakeReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Silence(link) => write!(f, "link {}: silence", link.0),
+            Self::Through(link) => write!(f, "link {}: bytes through", link.0),
+            Self::Reply(link) => write!(f, "link {}: delayed reply", link.0),
+            Self::Chatter => f.write_str("chatter"),
+            Self::Drive(drive, timer) => write!(f, "drive {}: {timer}", drive.0),
+        }
+    }
 }

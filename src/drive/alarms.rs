@@ -76,12 +76,12 @@ impl Drive {
     /// A master spoke to this drive: from now on it has the time in the row to speak again.
     pub(super) fn hear(&mut self) {
         let time = self.model.wiring.timeout.as_ref().and_then(|hold| self.time_in(hold));
-        self.silence.refresh(self.now, time);
+        self.comms.hear(self.now, time);
     }
 
     /// Trips when no master has spoken in time. The next one who does starts the time anew.
     pub(super) fn end_silence(&mut self) {
-        if self.silence.expired(self.now).is_some() {
+        if self.comms.take_silence(self.now) {
             self.trip(AlarmCause::CommTimeout);
         }
     }

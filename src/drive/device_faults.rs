@@ -1,7 +1,7 @@
 //! What is wrong with a device, apart from its line: causes that stand, an axis that is blocked, feedback that is gone,
 //! contacts that stick or bounce. They come and go by command and outlast the power.
 
-use super::Drive;
+use super::{Drive, Timer};
 use crate::event::{Change, DeviceFault};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{AlarmCause, AlarmCauses, Input, Named};
@@ -39,9 +39,9 @@ struct Bounce {
 }
 
 impl DeviceFaults {
-    /// When the next edge of a bounce comes.
-    pub(super) fn deadline(&self) -> Option<Instant> {
-        self.bounces.iter().map(|bounce| bounce.next).min()
+    /// When the next edges of bounces come, and on which terminals.
+    pub(super) fn timers(&self) -> impl Iterator<Item = (Instant, Timer)> {
+        self.bounces.iter().map(|bounce| (bounce.next, Timer::Bounce(bounce.index)))
     }
 
     /// The signals of input terminals as they get through their contacts.
@@ -92,13 +92,13 @@ impl Drive {
     }
 
     /// Where the axis seems to be, in the machine's coordinate.
-    pub(super) fn seen_position(&self) -> i64 {
-        self.device_faults.seen.map_or_else(|| self.motor.position(self.now), |seen| seen.position)
+    pub(super) fn seen_position(&self, now: Instant) -> i64 {
+        self.device_faults.seen.map_or_else(|| self.motor.position(now), |seen| seen.position)
     }
 
     /// How fast it seems to go, in counts per second.
-    pub(super) fn seen_speed(&self) -> f64 {
-        self.device_faults.seen.map_or_else(|| self.motor.speed(self.now), |seen| seen.speed)
+    pub(super) fn seen_speed(&self, now: Instant) -> f64 {
+        self.device_faults.seen.map_or_else(|| self.motor.speed(now), |seen| seen.speed)
     }
 
     /// Causes that stand: no reset clears their alarms.
@@ -133,7 +133,7 @@ impl Drive {
         }
         self.device_faults.bounces.retain(|bounce| bounce.edges > 0);
         for (bit, index) in told.iter().filter(|(bit, _)| self.device_faults.stuck & bit == 0) {
-            let signal = self.terminal_signals() & u32::from(*bit) != 0;
+            let signal = self.terminal_signals(self.now) & u32::from(*bit) != 0;
             self.changes.push_back(Change::Terminal { index: *index, signal });
         }
         if !told.is_empty() {
@@ -172,14 +172,17 @@ impl Drive {
             }
             DeviceFault::Frozen => self.device_faults.frozen = on,
             DeviceFault::Stuck(index) => {
-                let (bit, kept) = (1 << index, self.terminal_signals() as u16);
+                let (bit, kept) = (1 << index, self.terminal_signals(self.now) as u16);
                 let DeviceFaults { stuck, kept: keeps, .. } = &mut self.device_faults;
                 *stuck = if on { *stuck | bit } else { *stuck & !bit };
                 *keeps = *keeps & !bit | kept & bit;
             }
         }
         let blind = self.device_faults.encoder_lost || self.device_faults.frozen;
-        let seen = FrozenFeedback { position: self.seen_position(), speed: self.seen_speed() };
+        let seen = FrozenFeedback {
+            position: self.seen_position(self.now),
+            speed: self.seen_speed(self.now),
+        };
         self.device_faults.seen = blind.then_some(seen);
     }
 }

@@ -238,7 +238,7 @@ impl Drive {
             OriginPosition::KeptMinus => self.zero.saturating_add(coordinate),
         };
         self.home_done = true;
-        let position = self.wrapped(self.position());
+        let position = self.wrapped(self.position(self.now));
         self.changes.push_back(Change::Homed { method: self.method, position });
         self.home_is_over();
     }

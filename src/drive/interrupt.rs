@@ -68,7 +68,7 @@ impl Drive {
     pub(super) fn settle_interrupt(&mut self) {
         let arrived = self.motor.has_arrived();
         if self.interrupt.stage == InterruptState::Active {
-            let done = self.in_position_at().filter(|at| *at <= self.now);
+            let done = self.in_position_at(self.now).filter(|at| *at <= self.now);
             let broken = self.motor.phase() != Phase::Moving && !arrived;
             self.interrupt.stage = match done {
                 Some(at) => InterruptState::Done { at },
@@ -105,23 +105,23 @@ impl Drive {
     }
 
     /// Is one under way, and has one just come to its end?
-    pub(super) fn interrupt_shows(&self) -> (bool, bool) {
-        match (self.interrupt.stage, self.interrupt_done_at()) {
-            (InterruptState::Active, at) if at.is_none_or(|at| at > self.now) => (true, false),
-            (_, Some(at)) => (false, at <= self.now && self.now < at + self.interrupt_done_time()),
+    pub(super) fn interrupt_shows(&self, now: Instant) -> (bool, bool) {
+        match (self.interrupt.stage, self.interrupt_done_at(now)) {
+            (InterruptState::Active, at) if at.is_none_or(|at| at > now) => (true, false),
+            (_, Some(at)) => (false, at <= now && now < at + self.interrupt_done_time()),
             (_, None) => (false, false),
         }
     }
 
     /// When one that has come to its end is told of no longer.
-    pub(super) fn interrupt_forgotten_at(&self) -> Option<Instant> {
-        Some(self.interrupt_done_at()? + self.interrupt_done_time())
+    pub(super) fn interrupt_forgotten_at(&self, now: Instant) -> Option<Instant> {
+        Some(self.interrupt_done_at(now)? + self.interrupt_done_time())
     }
 
-    fn interrupt_done_at(&self) -> Option<Instant> {
+    fn interrupt_done_at(&self, now: Instant) -> Option<Instant> {
         match self.interrupt.stage {
             InterruptState::None => None,
-            InterruptState::Active => self.in_position_at(),
+            InterruptState::Active => self.in_position_at(now),
             InterruptState::Done { at } => Some(at),
         }
     }

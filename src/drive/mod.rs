@@ -6,6 +6,7 @@
 //! other drive.
 
 mod alarms;
+mod comms;
 mod course;
 mod device_faults;
 mod gear;
@@ -24,20 +25,24 @@ mod settings;
 mod setup;
 mod show;
 mod signals;
+mod timer;
+mod view;
 mod windows;
 
 pub use issued::IssuedCommand;
 pub use setup::Setup;
+pub use timer::Timer;
+pub use view::View;
 
 use crate::bank::{Bank, Causes, Gate};
 use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Wants, Watchdog};
 use crate::event::{Change, Ignored, Ordered};
-use crate::model::{Model, WireFormat};
-use crate::serial::{Mode, Settings};
+use crate::model::Model;
+use crate::serial::Mode;
 use crate::time::Instant;
 use crate::vocabulary::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
-use crate::wire::function::READ;
-use crate::wire::{Malformed, Request, Response, Span, Words};
+use crate::wire::{Request, Response, Span, Words};
+use comms::Comms;
 use course::Course;
 use device_faults::DeviceFaults;
 use interrupt::Interrupt;
@@ -48,6 +53,7 @@ use settings::Moment;
 use std::cell::Cell;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use timer::Sleeper;
 
 /// One station of a drive.
 #[derive(Debug)]
@@ -65,14 +71,10 @@ pub struct Drive {
     power_stage: PowerStage,
     /// Watchdogs of the input words.
     word_watchdogs: Vec<Watchdog>,
-    /// Watchdog of the master: how long it may be silent.
-    silence: Watchdog,
+    comms: Comms,
     /// Signals on the input terminals, bit by bit.
     terminals: u16,
     inputs: Inputs,
-    switches: u8,
-    unit: u8,
-    mode: Option<Mode>,
     motor: Motor,
     /// What the motion under way goes by.
     course: Option<Course>,
@@ -105,6 +107,8 @@ pub struct Drive {
     /// Functions that are not simulated and of which the log has told since power came on, as bits by index.
     told_not_simulated: u64,
     changes: VecDeque<Change>,
+    /// What has woken it, since somebody asked.
+    woken: VecDeque<Timer>,
     /// A master has asked for a restart of the whole device, which only the bus knows.
     restart: bool,
     /// What the request under way has ordered.
@@ -126,7 +130,7 @@ impl Drive {
                 PowerControl::Levels(LevelControl::default()),
             ),
             word_watchdogs: vec![Watchdog::default(); words],
-            silence: Watchdog::default(),
+            comms: Comms::new(setup.switches),
             motor: Motor::standing(
                 now,
                 setup.start as f64,
@@ -157,12 +161,10 @@ impl Drive {
             device_faults: DeviceFaults::default(),
             terminals: setup.terminals,
             inputs: Inputs::default(),
-            switches: setup.switches,
-            unit: 0,
-            mode: None,
             position_at_power_on: setup.position,
             told_not_simulated: 0,
             changes: VecDeque::with_capacity(8),
+            woken: VecDeque::with_capacity(4),
             restart: false,
             issued: None,
             read: [0; 125],
@@ -183,7 +185,7 @@ impl Drive {
 
     /// The unit address in force.
     pub fn unit(&self) -> u8 {
-        self.unit
+        self.comms.unit()
     }
 
     /// The values of its registers, for those who look from outside.
@@ -194,7 +196,7 @@ impl Drive {
     /// The mode that it talks in. `None` where a parameter held a code that stands for nothing when it took
     /// effect: such a drive hears nobody.
     pub fn mode(&self) -> Option<Mode> {
-        self.mode
+        self.comms.mode()
     }
 
     /// Answers a request that arrived at `now`, or says why not.
@@ -203,7 +205,8 @@ impl Drive {
         self.hear();
         self.issued = None;
         if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
-            return Err(self.refuse(Cause::Function, Detail::Function(*function)));
+            let causes = Causes::of(Cause::Function, Detail::Function(*function));
+            return Err(self.refuse(causes));
         }
         match Request::parse(pdu, self.model.line.length_check) {
             Ok(Request::Read(span)) => self.answer_read(span),
@@ -215,7 +218,9 @@ impl Drive {
                 self.write(span, values)?;
                 Ok(Response::WriteMany(span))
             }
-            Err(malformed) => Err(self.refuse_malformed(pdu, malformed)),
+            Err(malformed) => {
+                Err(self.refuse(Causes::of_malformed(pdu, malformed, &self.model.line)))
+            }
         }
     }
 
@@ -265,7 +270,8 @@ impl Drive {
         self.changes.push_back(Change::PoweredOff);
         self.power_stage.power_off();
         self.report_power_stage();
-        self.word_watchdogs.iter_mut().chain([&mut self.silence]).for_each(Watchdog::stop);
+        self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
+        self.comms.power_off();
         self.chain.end();
         self.motor.follow(now, Wants::default());
         self.tell_stages(None);
@@ -288,21 +294,9 @@ impl Drive {
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
     pub fn advance_to(&mut self, now: Instant) {
-        while let Some(at) = self.deadline().filter(|at| *at <= now) {
+        while let Some((at, _)) = self.next_timer().filter(|(at, _)| *at <= now) {
             self.now = self.now.max(at);
-            if self.powered {
-                self.power_stage.advance(self.now);
-                self.report_power_stage();
-            }
-            self.bounce();
-            // Switches first: what they are wired to has changed before anything else happens.
-            if self.motor.take_switch_edge(self.now) {
-                self.gather_inputs();
-            }
-            self.motor.advance(self.now);
-            self.tell_stages(None);
-            self.expire_words();
-            self.end_silence();
+            Sleeper::ALL.into_iter().for_each(|part| self.wake(part));
             self.update_axis();
             self.advance_chain();
             self.explain();
@@ -310,18 +304,64 @@ impl Drive {
         self.now = self.now.max(now);
     }
 
-    /// When something will happen by itself.
-    pub fn deadline(&self) -> Option<Instant> {
-        let ready = self.power_stage.ready_at();
-        let motor = self.motor.next_timer().map(|(at, _)| at);
-        let chain = self.chain.deadline();
-        let ends = [self.watchdog_at(), ready, motor, chain, self.device_faults.deadline()];
-        ends.into_iter().flatten().min()
+    /// Wakes `part` if it is due.
+    fn wake(&mut self, part: Sleeper) {
+        let due = |(at, timer): &(Instant, Timer)| *at <= self.now && timer.wakes() == Some(part);
+        let mut timers: Vec<_> = self.timers().filter(due).map(|(_, timer)| timer).collect();
+        if timers.is_empty() {
+            return;
+        }
+        timers.sort_unstable();
+        self.woken.extend(timers);
+        match part {
+            Sleeper::PowerStage => {
+                self.power_stage.advance(self.now);
+                self.report_power_stage();
+            }
+            Sleeper::Contacts => self.bounce(),
+            Sleeper::Switches => {
+                if self.motor.take_switch_edge(self.now) {
+                    self.gather_inputs();
+                }
+            }
+            Sleeper::Axis => {
+                self.motor.advance(self.now);
+                self.tell_stages(None);
+            }
+            Sleeper::InputWords => self.expire_words(),
+            Sleeper::Comms => self.end_silence(),
+        }
+    }
+
+    /// What will happen next by itself, and when.
+    pub fn next_timer(&self) -> Option<(Instant, Timer)> {
+        self.timers().min()
+    }
+
+    /// All its deadlines, in any order.
+    fn timers(&self) -> impl Iterator<Item = (Instant, Timer)> {
+        let ready = self.power_stage.ready_at().map(|at| (at, Timer::Ready));
+        let axis = self.motor.timers().map(|(at, timer)| (at, Timer::Axis(timer)));
+        let chain = self.chain.deadline().map(|at| (at, Timer::Chain));
+        let others = ready.into_iter().chain(axis).chain(chain);
+        others.chain(self.device_faults.timers()).chain(self.watchdogs())
+    }
+
+    /// What a master keeps from expiring.
+    fn watchdogs(&self) -> impl Iterator<Item = (Instant, Timer)> {
+        let words = (0u8..).map(Timer::HoldWord).zip(&self.word_watchdogs);
+        let words = words.filter_map(|(timer, word)| Some((word.deadline()?, timer)));
+        words.chain(self.comms.silent_at().map(|at| (at, Timer::MasterSilence)))
     }
 
     /// When the first watchdog expires if the master says no more.
     pub fn watchdog_at(&self) -> Option<Instant> {
-        self.word_watchdogs.iter().chain([&self.silence]).filter_map(Watchdog::deadline).min()
+        self.watchdogs().map(|(at, _)| at).min()
+    }
+
+    /// The drive as it is at `now`: not before what has happened to it, and not after what will happen next by itself.
+    pub fn at(&self, now: Instant) -> View<'_> {
+        View::new(self, now)
     }
 
     /// The next change that has not been told yet.
@@ -329,12 +369,17 @@ impl Drive {
         self.changes.pop_front()
     }
 
+    /// The next deadline that has woken it and that nobody was told of.
+    pub fn poll_woken(&mut self) -> Option<Timer> {
+        self.woken.pop_front()
+    }
+
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
         let plan = self.bank.plan_read(&self.model, span)?;
         let (mut read, dark) = (self.read, Cell::new(0));
         let show = |row| {
             self.dark_word(row).into_iter().for_each(|word| dark.set(dark.get() | 1 << word));
-            self.show(row)
+            self.show(self.now, row)
         };
         let len = plan.read(&self.bank, &self.model, show, &mut read);
         self.read = read;
@@ -351,35 +396,7 @@ impl Drive {
         Ok(())
     }
 
-    fn refuse(&self, cause: Cause, detail: Detail) -> Refusal {
-        let mut causes = Causes::default();
-        causes.meet(cause, detail);
-        self.answer_causes(causes)
-    }
-
-    fn refuse_malformed(&self, pdu: &[u8], malformed: Malformed) -> Refusal {
-        let line = &self.model.line;
-        let most = if pdu.first() == Some(&READ) { line.max_read } else { line.max_write };
-        let mut causes = Causes::default();
-        match malformed {
-            Malformed::Function(code) => causes.meet(Cause::Function, Detail::Function(code)),
-            Malformed::Length { got, want } => {
-                causes.meet(Cause::Length, Detail::Length { got, want });
-            }
-            Malformed::NoRegisters => {
-                causes.meet(Cause::Quantity, Detail::Quantity { got: 0, most });
-            }
-            Malformed::Beyond { start, count } => {
-                if count > most {
-                    causes.meet(Cause::Quantity, Detail::Quantity { got: count, most });
-                }
-                causes.meet(Cause::AddressBeyond, Detail::Address(start));
-            }
-        }
-        self.answer_causes(causes)
-    }
-
-    fn answer_causes(&self, causes: Causes) -> Refusal {
+    fn refuse(&self, causes: Causes) -> Refusal {
         let refusal = causes.refusal(&self.model.line.refuse);
         refusal.expect("the model was checked: each cause that can occur has an exception code")
     }
@@ -398,54 +415,20 @@ impl Drive {
         self.take_settings(Moment::Start);
         self.interrupt = Interrupt::default();
         self.chain.end();
-        self.word_watchdogs.iter_mut().chain([&mut self.silence]).for_each(Watchdog::stop);
+        self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
         // What is active from the start has not risen.
-        self.inputs = self.active_inputs();
-        self.zero =
-            self.seen_position().saturating_sub(self.gear().counts(self.position_at_power_on));
-        self.unit = self.unit_asked_for();
-        let mode = self.mode_asked_for();
-        let from = std::mem::replace(&mut self.mode, mode);
+        self.inputs = self.active_inputs(self.now);
+        self.zero = self
+            .seen_position(self.now)
+            .saturating_sub(self.gear().counts(self.position_at_power_on));
+        let moved = self.comms.power_on(&self.model, &self.bank);
         self.changes.push_back(Change::PoweredOn);
-        if from.is_some() && from != mode {
-            self.changes.push_back(Change::Mode { from, to: mode });
-        }
+        self.changes.extend(moved);
         self.gather_inputs();
         self.power_stage.advance(now);
         self.report_power_stage();
         self.update_axis();
         self.begin_explaining();
-    }
-
-    /// The unit address that switches and parameters ask for.
-    fn unit_asked_for(&self) -> u8 {
-        let rule = &self.model.line.unit;
-        let register = self.bank.value(&self.model, rule.row);
-        let switches = self.switches & ((1u16 << rule.switches) - 1) as u8;
-        match (switches, u8::try_from(register).unwrap_or(0)) {
-            (0, 0) => rule.zero,
-            (0, unit) => unit,
-            (switches, _) => switches,
-        }
-    }
-
-    /// The mode that the parameters ask for, or the switches in place of them.
-    fn mode_asked_for(&self) -> Option<Mode> {
-        let line = &self.model.line;
-        let (baud, format) = match line.baud_switches {
-            0 => (
-                line.baud.decode(self.bank.value(&self.model, line.baud.row)),
-                line.format.decode(self.bank.value(&self.model, line.format.row)),
-            ),
-            _ => {
-                let code = i64::from(self.switches >> line.unit.switches);
-                let row = self.model.map.row(line.format.row);
-                let factory = line.format.decode(row.kind.value(row.init));
-                (line.baud.codes.get(&code).copied(), factory)
-            }
-        };
-        let WireFormat { ascii, format } = format?;
-        Some(Mode { ascii, settings: Settings { baud: baud?, format } })
     }
 
     /// Carries out `action`.
@@ -469,11 +452,11 @@ impl Drive {
             Action::EncoderReset => done = self.power_stage.reset_of(AlarmCause::Encoder),
             Action::ClearAlarmHistory => self.forget_alarms(),
             Action::ClearPosition => {
-                self.zero = self.seen_position();
+                self.zero = self.seen_position(self.now);
                 self.changes.push_back(Change::PositionCleared);
             }
             Action::ClearTurns => {
-                self.cleared_turns = self.full_turns();
+                self.cleared_turns = self.full_turns(self.now);
                 self.changes.push_back(Change::TurnsCleared);
             }
             Action::StoreAll => {

@@ -8,14 +8,15 @@ use crate::behaviour::{Commands, Control, Effect, Phase, Replan, Wants};
 use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
+use crate::time::Instant;
 use crate::vocabulary::{
     Action, HomeStarter, InhibitRule, Input, Modifier, Modifiers, Setting, SoftLimitRule, Threshold,
 };
 
 impl Drive {
     /// Where the axis stands, in the drive's coordinate and its units.
-    pub(super) fn position(&self) -> i64 {
-        self.shown(self.seen_position())
+    pub(super) fn position(&self, now: Instant) -> i64 {
+        self.shown(self.seen_position(now))
     }
 
     /// A position of the machine in the drive's coordinate and its units.
@@ -33,7 +34,7 @@ impl Drive {
         let row = self.model.wiring.axis.reversed;
         let reversed = row.is_some_and(|row| self.bank.value(&self.model, row) != 0);
         if reversed != self.reversed && !self.motor.is_moving() {
-            let position = self.seen_position().saturating_sub(self.zero);
+            let position = self.seen_position(self.now).saturating_sub(self.zero);
             self.motor.turn_round(self.now);
             self.reversed = reversed;
             self.zero = self.motor.position(self.now).saturating_sub(position);
@@ -42,21 +43,21 @@ impl Drive {
 
     /// Where the axis is and how fast it goes, in the machine's coordinate, which no register shows and
     /// which stays as it is when positive counts go the other origin.
-    pub fn axis_state(&self) -> State {
-        let State { position, speed } = self.motor.feedback(self.now);
+    pub(super) fn axis_state(&self, now: Instant) -> State {
+        let State { position, speed } = self.motor.feedback(now);
         let sign = if self.reversed { -1.0 } else { 1.0 };
         State { position: sign * position, speed: sign * speed }
     }
 
     /// What stands along the axis.
-    pub fn machine(&self) -> Machine {
+    pub(super) fn machine(&self) -> Machine {
         let machine = *self.motor.machine();
         if self.reversed { machine.mirrored() } else { machine }
     }
 
     /// How fast the axis goes, in revolutions a minute.
-    pub(super) fn rpm(&self) -> f64 {
-        rpm(self.seen_speed(), self.counts_per_rev)
+    pub(super) fn rpm(&self, now: Instant) -> f64 {
+        rpm(self.seen_speed(now), self.counts_per_rev)
     }
 
     /// The speed that was ordered, in revolutions a minute, where speed is what is controlled.

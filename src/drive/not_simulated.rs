@@ -24,7 +24,7 @@ impl Drive {
         let absent = &self.model.wiring.not_simulated;
         let mut asked = 0;
         let mut ask = |index: u8| asked |= 1 << index;
-        self.active_codes(&absent.input_codes, &mut ask);
+        self.active_codes(self.now, &absent.input_codes, &mut ask);
         self.active_positions(&absent.input_positions, &mut ask);
         self.active_bits(&absent.input_bits, &mut ask);
         asked

@@ -3,7 +3,7 @@
 use super::{Drive, IssuedCommand};
 use crate::bank::WritePlan;
 use crate::event::{Change, Ignored, Ordered};
-use crate::model::{self, Applies, Reaction};
+use crate::model::{self, Reaction};
 use crate::time::Duration;
 use crate::vocabulary::{Action, Modifier, Modifiers, RowId};
 
@@ -153,18 +153,7 @@ impl Drive {
 
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on.
     pub(super) fn follow_line_settings(&mut self) {
-        let line = &self.model.line;
-        let waits = |row| self.model.map.row(row).applies == Some(Applies::PowerOn);
-        let mode_waits = waits(line.baud.row) || waits(line.format.row);
-        let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for() };
-        let mode = if mode_waits { self.mode } else { self.mode_asked_for() };
-        if unit != self.unit {
-            let from = std::mem::replace(&mut self.unit, unit);
-            self.changes.push_back(Change::Unit { from, to: unit });
-        }
-        if mode != self.mode {
-            let from = std::mem::replace(&mut self.mode, mode);
-            self.changes.push_back(Change::Mode { from, to: mode });
-        }
+        let changes = self.comms.follow_settings(&self.model, &self.bank);
+        self.changes.extend(changes.into_iter().flatten());
     }
 }

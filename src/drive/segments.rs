@@ -58,7 +58,7 @@ impl Drive {
         let arrived = self.motor.has_arrived();
         if !(free && (arrived || phase == Phase::Moving)) {
             self.chain.end();
-        } else if let Some(at) = self.in_position_at() {
+        } else if let Some(at) = self.in_position_at(self.now) {
             self.chain.arrive(self.now, at);
         }
         let waits = free && self.inputs.has(Input::ZeroSpeedClamp);
@@ -182,7 +182,7 @@ impl Drive {
         let reverse = self.inputs.has(Input::ReversePosition);
         let (now, zero, gear) = (self.now, self.zero, self.gear());
         // A target is a place as the position register counts, which may have begun anew.
-        let begun = self.position() - self.wrapped(self.position());
+        let begun = self.position(self.now) - self.wrapped(self.position(self.now));
         let mut origin = MoveOrigin { from: begun, zero, gear, reverse };
         let target = |here: i64| {
             if !absolute {

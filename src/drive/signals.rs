@@ -5,6 +5,7 @@ use crate::behaviour::PowerLevels;
 use crate::event::{Ignored, Ordered};
 use crate::model::{Monitor, Shown, Terminals};
 use crate::motion::Switch;
+use crate::time::Instant;
 use crate::vocabulary::{AlarmCause, HomeStarter, Input, Inputs, Output, Outputs, RowId};
 
 impl Drive {
@@ -13,7 +14,7 @@ impl Drive {
         if !self.powered {
             return;
         }
-        let now = self.active_inputs();
+        let now = self.active_inputs(self.now);
         let before = std::mem::replace(&mut self.inputs, now);
         let risen = now.risen_since(before);
         self.look_at_inputs(before);
@@ -64,14 +65,14 @@ impl Drive {
     }
 
     /// The output signals, right now.
-    pub(super) fn outputs(&self) -> Outputs {
+    pub(super) fn outputs(&self, now: Instant) -> Outputs {
         if !self.powered {
             return Outputs::default();
         }
         let enabled = self.power_stage.is_enabled();
         let beyond = |forward: bool| {
             self.soft_limits().is_some_and(|[low, high]| {
-                let position = self.motor.state(self.now).position;
+                let position = self.motor.state(now).position;
                 if forward { position > high as f64 } else { position < low as f64 }
             })
         };
@@ -82,7 +83,7 @@ impl Drive {
             .with(Output::Enabled, enabled)
             .with(Output::Alarm, self.power_stage.alarm().is_some())
             .with(Output::BrakeOpen, enabled)
-            .with(Output::Moving, self.motor.is_moving() || self.motor.speed(self.now) != 0.0)
+            .with(Output::Moving, self.motor.is_moving() || self.motor.speed(now) != 0.0)
             .with(Output::HomeDone, self.home_done)
             .with(Output::AtLimitPos, self.inputs.has(Input::LimitPos))
             .with(Output::AtLimitNeg, self.inputs.has(Input::LimitNeg))
@@ -100,7 +101,7 @@ impl Drive {
             .with(Output::User0, user & 1 != 0)
             .with(Output::User1, user >> 1 & 1 != 0)
             .with(Output::User2, user >> 2 & 1 != 0);
-        self.with_positions(self.with_speeds(outputs))
+        self.with_positions(now, self.with_speeds(now, outputs))
     }
 
     /// What has come of row `of` of those whose bits are signals, bit by bit.
@@ -112,16 +113,16 @@ impl Drive {
     }
 
     /// Input terminals as `monitor` shows them, bit by bit.
-    pub(super) fn monitor_inputs(&self, monitor: Monitor) -> u32 {
+    pub(super) fn monitor_inputs(&self, now: Instant, monitor: Monitor) -> u32 {
         let Some(terminals) = &self.model.wiring.input_terminals else { return 0 };
         let closed = self.normally_closed(terminals);
-        monitored(monitor, self.active_terminals(terminals), closed, terminals)
+        monitored(monitor, self.active_terminals(now, terminals), closed, terminals)
     }
 
     /// Output terminals as `monitor` shows them, bit by bit.
-    pub(super) fn monitor_outputs(&self, monitor: Monitor) -> u32 {
+    pub(super) fn monitor_outputs(&self, now: Instant, monitor: Monitor) -> u32 {
         let Some(terminals) = &self.model.wiring.output_terminals else { return 0 };
-        let outputs = self.outputs();
+        let outputs = self.outputs(now);
         let mut active = 0;
         for (i, row) in terminals.functions.iter().enumerate() {
             let shown = terminals.meaning(self.bank.raw(*row));
@@ -132,23 +133,23 @@ impl Drive {
 
     /// Input terminals that are active, bit by bit. One that has the function of a switch of the machine is wired
     /// to it, as a normally open or closed one.
-    fn active_terminals(&self, terminals: &Terminals<Input>) -> u32 {
-        self.signals_on(terminals) ^ self.normally_closed(terminals)
+    fn active_terminals(&self, now: Instant, terminals: &Terminals<Input>) -> u32 {
+        self.signals_on(now, terminals) ^ self.normally_closed(terminals)
     }
 
     /// The signals on input terminals, bit by bit.
-    pub(super) fn terminal_signals(&self) -> u32 {
-        self.model.wiring.input_terminals.as_ref().map_or(0, |it| self.signals_on(it))
+    pub(super) fn terminal_signals(&self, now: Instant) -> u32 {
+        self.model.wiring.input_terminals.as_ref().map_or(0, |it| self.signals_on(now, it))
     }
 
-    fn signals_on(&self, terminals: &Terminals<Input>) -> u32 {
+    fn signals_on(&self, now: Instant, terminals: &Terminals<Input>) -> u32 {
         let closed = self.normally_closed(terminals);
         let mut active = u32::from(self.terminals) ^ closed;
         for (i, row) in terminals.functions.iter().enumerate() {
             let signal = terminals.meaning(self.bank.raw(*row));
             let switch = signal.and_then(|signal| self.switch(signal));
             if let Some(switch) = switch.filter(|it| self.motor.machine().has(*it)) {
-                let on = self.is_switched(switch) || u32::from(self.terminals) >> i & 1 != 0;
+                let on = self.is_switched(now, switch) || u32::from(self.terminals) >> i & 1 != 0;
                 active = active & !(1 << i) | u32::from(on) << i;
             }
         }
@@ -166,20 +167,20 @@ impl Drive {
         }
     }
 
-    fn is_switched(&self, switch: Switch) -> bool {
-        let state = self.motor.state(self.now);
+    fn is_switched(&self, now: Instant, switch: Switch) -> bool {
+        let state = self.motor.state(now);
         self.motor.machine().is_active(switch, state.position)
     }
 
-    pub(super) fn active_inputs(&self) -> Inputs {
+    pub(super) fn active_inputs(&self, now: Instant) -> Inputs {
         let wiring = &self.model.wiring;
         let mut inputs = Inputs::default();
         let mut insert = |signal| inputs.insert(signal);
         if let Some(terminals) = &wiring.input_terminals {
-            self.active_codes(&terminals.codes, &mut insert);
+            self.active_codes(now, &terminals.codes, &mut insert);
         }
         for signal in &wiring.machine_inputs {
-            if self.switch(*signal).is_some_and(|switch| self.is_switched(switch)) {
+            if self.switch(*signal).is_some_and(|switch| self.is_switched(now, switch)) {
                 insert(*signal);
             }
         }
@@ -191,9 +192,14 @@ impl Drive {
     }
 
     /// What active input terminals stand for, by their function numbers.
-    pub(super) fn active_codes<S: Copy>(&self, codes: &[(u16, S)], mut each: impl FnMut(S)) {
+    pub(super) fn active_codes<S: Copy>(
+        &self,
+        now: Instant,
+        codes: &[(u16, S)],
+        mut each: impl FnMut(S),
+    ) {
         let Some(terminals) = &self.model.wiring.input_terminals else { return };
-        let active = self.active_terminals(terminals);
+        let active = self.active_terminals(now, terminals);
         for (i, row) in terminals.functions.iter().enumerate() {
             let number = self.bank.raw(*row);
             let function = codes.iter().find(|(code, _)| u32::from(*code) == number);

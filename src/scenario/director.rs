@@ -84,10 +84,7 @@ impl Director {
 
     /// Carries out what is to be done right now: after input, and whatever else may have changed something.
     pub fn poll(&mut self, bus: &mut Bus) {
-        bus.catch_up();
-        while self.go_on(bus) {
-            bus.catch_up();
-        }
+        while self.go_on(bus) {}
         self.due = self.next_poll(bus);
     }
 
@@ -130,7 +127,7 @@ impl Director {
             }
             StepState::Repeats { left, at } if at <= now => self.act(bus, left),
             StepState::Expects { until } => {
-                let lacks = step.expect.iter().find(|it| !it.holds(bus.drive(it.drive)));
+                let lacks = step.expect.iter().find(|it| !it.holds(bus.view(it.drive)));
                 match lacks.map(|it| it.tell(bus)) {
                     Some(_) if now < until => return false,
                     failure => self.settle(bus, failure),
@@ -145,7 +142,7 @@ impl Director {
         match *trigger {
             Trigger::At(at) => at <= bus.now(),
             Trigger::Wait(time) => self.since + time <= bus.now(),
-            Trigger::When(condition) => condition.holds(bus.drive(condition.drive)),
+            Trigger::When(condition) => condition.holds(bus.view(condition.drive)),
             Trigger::After { n, kind, drive } => {
                 let drives =
                     bus.drives().map(|(id, _)| id).filter(|id| drive.is_none_or(|it| it == *id));
@@ -210,7 +207,7 @@ impl Director {
         }
     }
 
-    fn next_poll(&self, bus: &mut Bus) -> Option<Instant> {
+    fn next_poll(&self, bus: &Bus) -> Option<Instant> {
         let step = self.steps.get(self.next)?;
         let mut all = vec![self.limit];
         match self.state {

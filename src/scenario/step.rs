@@ -2,7 +2,7 @@
 
 use super::raw::RawKind;
 use crate::bus::{Bus, Command, RequestCounts};
-use crate::drive::Drive;
+use crate::drive::View;
 use crate::event::DriveId;
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{Named, Output, Quantity, RowId};
@@ -89,12 +89,12 @@ impl RawKind {
 
 impl Condition {
     /// Does it hold?
-    pub fn holds(&self, drive: &Drive) -> bool {
+    pub fn holds(&self, drive: View<'_>) -> bool {
         self.side(drive) == Ordering::Equal
     }
 
     /// Equal where it holds; else on which side of that the value is.
-    pub fn side(&self, drive: &Drive) -> Ordering {
+    pub fn side(&self, drive: View<'_>) -> Ordering {
         let value = self.value(drive);
         match self.test {
             Test::Is(want) => value.cmp(&want),
@@ -106,7 +106,7 @@ impl Condition {
 
     /// What is instead of what should be: `alarm of unit 1 is off, not on`.
     pub fn tell(&self, bus: &Bus) -> String {
-        let drive = bus.drive(self.drive);
+        let drive = bus.view(self.drive);
         let name = match self.subject {
             Subject::Signal(signal) => signal.name().to_owned(),
             Subject::Quantity(quantity) => quantity.name().to_owned(),
@@ -128,11 +128,11 @@ impl Condition {
         format!("{name} of unit {} is {}, not {want}", drive.unit(), text(self.value(drive)))
     }
 
-    fn value(&self, drive: &Drive) -> i64 {
+    fn value(&self, drive: View<'_>) -> i64 {
         match self.subject {
             Subject::Signal(signal) => drive.output(signal).into(),
             Subject::Quantity(quantity) => drive.quantity(quantity),
-            Subject::Row(row) => drive.model().map.row(row).kind.value(drive.show(row)),
+            Subject::Row(row) => drive.value(row),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::bench::{
     WireSpec,
 };
 use crate::bus::{Bus, Command, CommandError, LineCommand, LinkId, Output};
-use crate::drive::Drive;
+use crate::drive::View;
 use crate::event::{DriveId, Event};
 use crate::fault::LineBehaviour;
 use crate::line::Framing;
@@ -343,14 +343,14 @@ impl Rig {
         reply.map(|_| ())
     }
 
-    /// The first drive of the line.
-    pub fn drive(&self) -> &Drive {
-        self.bus.drive(DriveId(0))
+    /// The first drive of the line, as it is now.
+    pub fn drive(&self) -> View<'_> {
+        self.bus.view(DriveId(0))
     }
 
-    /// The drive that answers to `unit`.
-    pub fn unit(&self, unit: u8) -> Option<&Drive> {
-        self.bus.find(unit).map(|id| self.bus.drive(id))
+    /// The drive that answers to `unit`, as it is now.
+    pub fn unit(&self, unit: u8) -> Option<View<'_>> {
+        self.bus.find(unit).map(|id| self.bus.view(id))
     }
 
     /// The line itself.
@@ -373,6 +373,13 @@ impl Rig {
         self.log[first..].iter().map(|line| format!("{line}\n")).collect()
     }
 
+    /// What a test that fails has to say: `what` went wrong, the log, and what has woken the line last, by name.
+    pub fn report(&self, what: &str) -> String {
+        let mut text = format!("{what}\n--- log\n{}--- woken by\n", self.log());
+        self.bus.wakes().for_each(|wake| text += &format!("{wake}\n"));
+        text
+    }
+
     /// Lets what is due happen.
     fn pass(&mut self) {
         match &mut self.director {
@@ -385,7 +392,6 @@ impl Rig {
         if let Some(director) = &mut self.director {
             director.poll(&mut self.bus);
         }
-        self.bus.catch_up();
         let mut sent = Vec::new();
         while let Some(output) = self.bus.poll_output() {
             match output {

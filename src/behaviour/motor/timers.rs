@@ -101,7 +101,8 @@ impl MotorTimers {
         Some(timer)
     }
 
-    fn set_ones(&self) -> impl Iterator<Item = (Instant, MotorTimer)> {
+    /// Those that are set, in the order of their names.
+    pub(super) fn set_ones(&self) -> impl Iterator<Item = (Instant, MotorTimer)> {
         self.at.iter().zip(MotorTimer::ALL).filter_map(|(at, timer)| at.map(|at| (at, timer)))
     }
 }

@@ -10,6 +10,11 @@ impl Motor {
         self.timers.next()
     }
 
+    /// All that will happen to it by itself if nothing comes between, and when.
+    pub fn timers(&self) -> impl Iterator<Item = (Instant, MotorTimer)> {
+        self.timers.set_ones()
+    }
+
     /// Has a switch of the machine changed up to `now`? Asked once for each time; whoever knows what the
     /// switches are wired to looks at them then, and before [`Motor::advance`].
     pub fn take_switch_edge(&mut self, now: Instant) -> bool {

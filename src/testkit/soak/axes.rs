@@ -1,6 +1,6 @@
 //! Where axes are: never beyond a hard stop, and never farther than their drives can have moved them meanwhile.
 
-use crate::drive::Drive;
+use crate::drive::View;
 use crate::model::{Counts, Model};
 use crate::motion::State;
 use crate::time::Duration;
@@ -14,8 +14,8 @@ pub struct SoakAxis {
 }
 
 impl SoakAxis {
-    /// The axis of `drive`, right now.
-    pub fn of(drive: &Drive) -> Self {
+    /// The axis of `drive`.
+    pub fn of(drive: View<'_>) -> Self {
         let counts_per_rev = match drive.model().wiring.axis.counts_per_rev {
             Counts::Fixed(counts) => counts.into(),
             Counts::Row(row) => drive.bank().value(drive.model(), row) as f64,
@@ -29,7 +29,7 @@ impl SoakAxis {
     }
 
     /// Can `drive` have moved it there from `before`, in `time`?
-    pub fn came_from(&self, before: &Self, time: Duration, drive: &Drive) -> Result<(), String> {
+    pub fn came_from(&self, before: &Self, time: Duration, drive: View<'_>) -> Result<(), String> {
         let (from, to) = (before.state.position, self.state.position);
         let top = top_rpm(drive.model()) / 60.0 * self.counts_per_rev.max(before.counts_per_rev);
         let most = top * time.as_secs_f64() * 1.001 + 1.0;

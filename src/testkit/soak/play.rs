@@ -79,7 +79,7 @@ impl<'a> SoakPlayer<'a> {
     fn new(scene: &'a Scene, polling: Polling, bug: Option<InjectedBug>) -> Self {
         let (mut bus, wire) = (scene.bus(), scene.line.wire);
         let link = bus.open(scene.framing(wire));
-        let axes = bus.drives().map(|(_, drive)| SoakAxis::of(drive)).collect();
+        let axes = bus.drives().map(|(_, drive)| SoakAxis::of(drive.at(bus.now()))).collect();
         let (replies, played) = (Replies::default(), Played::default());
         Self { scene, bus, link, wire, now: Instant::ZERO, polling, bug, replies, axes, played }
     }
@@ -224,7 +224,6 @@ impl<'a> SoakPlayer<'a> {
         act(&mut self.bus);
         let mut seen = self.drain();
         self.damage(&mut seen, &mut before);
-        self.bus.catch_up();
         self.check(&seen, &before, command)
     }
 
@@ -275,6 +274,7 @@ impl<'a> SoakPlayer<'a> {
         rows::written(seen, &self.bus)?;
         let time = self.bus.now().since(before.at);
         for (i, drive) in drives.into_iter().enumerate() {
+            let drive = drive.at(self.bus.now());
             let mut now = SoakAxis::of(drive);
             now.came_from(&self.axes[i], time, drive)
                 .map_err(|what| format!("the axis of drive {i} {what}"))?;
@@ -282,7 +282,7 @@ impl<'a> SoakPlayer<'a> {
             self.axes[i] = now;
         }
         match self.bus.poll_at().filter(|wake| wake.at <= self.bus.now()) {
-            Some(wake) => Err(format!("{:?} is overdue", wake.reason)),
+            Some(wake) => Err(format!("{} is overdue", wake.reason)),
             None => Ok(()),
         }
     }

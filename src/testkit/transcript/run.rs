@@ -3,7 +3,7 @@
 use super::TranscriptFailure;
 use super::script::{Check, DriveLine, Script, TranscriptStep};
 use crate::bench::{BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, machine};
-use crate::drive::Drive;
+use crate::drive::View;
 use crate::testkit::{Rig, to_hex};
 use crate::units::parse_integer;
 use crate::vocabulary::{Named, Output, Quantity};
@@ -165,7 +165,7 @@ impl TranscriptPlayer {
     }
 
     fn failure(&self, line: usize, what: String) -> TranscriptFailure {
-        TranscriptFailure { line, what: format!("{what}\n--- log\n{}", self.rig.log()) }
+        TranscriptFailure { line, what: self.rig.report(&what) }
     }
 }
 
@@ -181,7 +181,7 @@ fn same(want: Vec<u8>, got: Vec<u8>) -> Result<(), String> {
     }
 }
 
-fn look(drive: &Drive, check: &Check) -> Result<(), String> {
+fn look(drive: View<'_>, check: &Check) -> Result<(), String> {
     let Check { name, want } = check;
     let row = drive.model().map.find(name);
     let got = if let Some(signal) = Output::parse(name) {
@@ -189,7 +189,7 @@ fn look(drive: &Drive, check: &Check) -> Result<(), String> {
     } else if let Some(quantity) = Quantity::parse(name) {
         drive.quantity(quantity).to_string()
     } else if let Some(row) = row {
-        drive.model().map.row(row).kind.value(drive.show(row)).to_string()
+        drive.value(row).to_string()
     } else {
         return Err(format!("unknown signal, quantity or register `{name}`"));
     };
