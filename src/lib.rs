@@ -15,24 +15,7 @@
 //! assert!(rig.ask("01 2B 0E 01 00").starts_with("01 AB"));
 //! ```
 //!
-//! `docs/ARCHITECTURE.md` draws the map. Imports point down only:
-//!
-//! ```text
-//! main · cli            flags, exit code
-//! testkit               virtual clock; of all this only `testkit::live` needs the server
-//! server                the only place that waits          (feature `cli`)
-//! scenario              what happens to a line, and when
-//! bench  log            benches: YAML -> buses | events as text
-//! bus                   one line: framing + drives
-//! drive                 the only place that sees registers AND behaviours
-//! bank  behaviour  fault                               cells and plans | state machines | fault rules
-//! model                 YAML -> Model
-//! line  motion          silence and frames | closed form
-//! event                 what happened
-//! vocabulary  serial         what models and behaviours both say | speed and format of a line
-//! time  units  wire  problem  rng                          what everyone may say
-//! text                  which characters a line of text may hold
-//! ```
+//! `docs/ARCHITECTURE.md` draws the map of its modules.
 
 pub mod bank;
 pub mod behaviour;
