@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::event::DriveId;
-use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
+use crate::wire::function::{READ, WRITES};
 
 /// Requests that a drive got and answered, refused ones too.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -32,7 +32,7 @@ impl Bus {
         let counts = &mut self.request_counts[usize::from(id.0)];
         match function {
             READ => counts.reads += 1,
-            WRITE_ONE | WRITE_MANY => counts.writes += 1,
+            code if WRITES.contains(&code) => counts.writes += 1,
             _ => counts.others += 1,
         }
     }

@@ -17,7 +17,7 @@ pub use frame::{Adu, Frame, Inline, NoiseCause, Pdu};
 pub use request::{LengthCheck, Malformed, Request, Span, Words};
 pub use response::{Exception, Response};
 
-/// Function codes that drives of this kind know.
+/// Function codes.
 pub mod function {
     /// Read Holding Registers.
     pub const READ: u8 = 0x03;
@@ -25,6 +25,10 @@ pub mod function {
     pub const WRITE_ONE: u8 = 0x06;
     /// Write Multiple Registers.
     pub const WRITE_MANY: u8 = 0x10;
+    /// Those that a drive can support.
+    pub const ALL: [u8; 3] = [READ, WRITE_ONE, WRITE_MANY];
+    /// Those of them that write registers.
+    pub const WRITES: [u8; 2] = [WRITE_ONE, WRITE_MANY];
     /// Set in the function code of an exception.
     pub const EXCEPTION: u8 = 0x80;
 }

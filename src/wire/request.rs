@@ -139,6 +139,14 @@ impl<'a> Request<'a> {
         }
     }
 
+    /// The registers that it reads or writes.
+    pub fn span(self) -> Span {
+        match self {
+            Self::Read(span) | Self::WriteMany { span, .. } => span,
+            Self::WriteOne { address, .. } => Span::one(address),
+        }
+    }
+
     fn parse_write_many(pdu: &'a [u8], check: LengthCheck) -> Result<Self, Malformed> {
         let [_, a, b, c, d, byte_count, data @ ..] = pdu else {
             return Err(Malformed::Length { got: pdu.len(), want: 6 });

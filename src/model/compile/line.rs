@@ -17,8 +17,7 @@ use crate::problem::{At, Path, Problem, suggest};
 use crate::serial::Format;
 use crate::time::Duration;
 use crate::vocabulary::{Cause, Named};
-use crate::wire::LengthCheck;
-use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
+use crate::wire::{LengthCheck, function};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -106,16 +105,17 @@ pub(super) fn timeout(raw: &RawLine, uses: &mut Uses, names: &mut Names) -> Opti
 }
 
 fn functions(raw: &RawLine, path: &Path, names: &mut Names) {
+    let supported = function::ALL.map(|code| format!("0x{code:02X}")).join(", ");
     if raw.functions.is_empty() {
         let what = "a drive needs at least one function code";
         let problem = Problem::value(path.clone(), what);
-        names.report(problem.advise("list those of 0x03, 0x06 and 0x10 that it supports"));
+        names.report(problem.advise(format!("supported: {supported}")));
     }
-    for (i, function) in raw.functions.iter().enumerate() {
-        if ![READ, WRITE_ONE, WRITE_MANY].contains(function) {
-            let what = format!("function code 0x{function:02X} is not supported");
+    for (i, code) in raw.functions.iter().enumerate() {
+        if !function::ALL.contains(code) {
+            let what = format!("function code 0x{code:02X} is not supported");
             let problem = Problem::value(path.index(i), what);
-            names.report(problem.advise("supported: 0x03, 0x06, 0x10"));
+            names.report(problem.advise(format!("supported: {supported}")));
         }
     }
 }
