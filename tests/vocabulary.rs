@@ -436,12 +436,12 @@ fn shown(rig: &Rig, output: Output) -> bool {
             places.extend(of_output.map(|(bit, it)| (shown >> bit & 1 != 0) != it.inverted));
         }
     }
-    let words = wiring(rig).output_words.as_ref().expect("it has words");
-    for (position, it) in words.positions.iter().filter(|(_, it)| it.signal == output) {
-        let (word, bit) = ((position / 16) as usize, position % 16);
-        let enabled = rig.drive().bank().raw(words.enabled_by[word]) >> bit & 1 != 0;
-        let shown = rig.drive().show(row_showing(rig, &Shows::OutputWord(word as u16)));
-        let bit = shown >> bit & 1 != 0;
+    let words = wiring(rig).output_words.iter();
+    let bits = words.flat_map(|word| word.bits.iter().map(move |(bit, it)| (word, bit, it)));
+    for (word, bit, it) in bits.filter(|(.., it)| it.signal == output) {
+        let enable = word.enabled_by.expect("an enable word");
+        let enabled = rig.drive().bank().raw(enable) >> bit & 1 != 0;
+        let bit = rig.drive().show(word.row) >> bit & 1 != 0;
         places.push(if enabled { bit != it.inverted } else { places[0] });
         assert!(enabled || !bit, "a bit shows that is not enabled");
     }

@@ -280,10 +280,7 @@ fn whole(model: &Model, id: RowId) -> impl Iterator<Item = &'static str> {
     let whole = [
         ("output terminals", outputs.is_some_and(|it| it.functions.contains(&id))),
         ("output terminals", outputs.is_some_and(|it| it.normally_closed == Some(id))),
-        (
-            "output words",
-            wiring.output_words.as_ref().is_some_and(|it| it.enabled_by.contains(&id)),
-        ),
+        ("output words", wiring.output_words.iter().any(|it| it.enabled_by == Some(id))),
         ("user outputs", wiring.user_outputs == Some(id)),
         ("word order", ordered),
         ("gear", gear.is_some_and(|it| [it.numerator, it.denominator].contains(&id))),

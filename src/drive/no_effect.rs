@@ -382,26 +382,26 @@ impl Drive {
     /// The output word that `row` shows, if nothing of it is enabled; else it has been seen.
     pub(super) fn dark_word(&self, row: RowId) -> Option<u16> {
         let Some(Shows::OutputWord(word)) = self.model.wiring.shows(row) else { return None };
-        let enable = self.model.wiring.output_words.as_ref()?.enabled_by.get(usize::from(*word))?;
-        (self.bank.raw(*enable) == 0).then_some(*word)
+        let enable = self.model.wiring.output_words[usize::from(*word)].enabled_by?;
+        (self.bank.raw(enable) == 0).then_some(*word)
     }
 
     /// Takes note of output words that were read and of which nothing is enabled, as bits.
     pub(super) fn look_at_dark(&mut self, read: u16) {
-        let Some(words) = &self.model.wiring.output_words else { return };
-        let mut enabled = 0;
-        for (word, row) in words.enabled_by.iter().enumerate() {
-            enabled |= u16::from(self.bank.raw(*row) != 0) << word;
+        if read | self.no_effect.dark == 0 {
+            return;
         }
+        let model = self.model.clone();
         let fresh = read & !self.no_effect.dark;
-        self.no_effect.dark = (self.no_effect.dark | read) & !enabled;
-        for word in (0..16u16).filter(|word| fresh >> word & 1 != 0) {
-            let wiring = &self.model.wiring;
-            let shows = wiring.shows.iter().position(|it| *it == Some(Shows::OutputWord(word)));
-            let enable = wiring.output_words.as_ref().map(|it| it.enabled_by[usize::from(word)]);
-            if let (Some(row), Some(enable)) = (shows, enable) {
+        self.no_effect.dark |= read;
+        for (i, word) in model.wiring.output_words.iter().enumerate() {
+            let Some(enable) = word.enabled_by else { continue };
+            if self.bank.raw(enable) != 0 {
+                self.no_effect.dark &= !(1 << i);
+            }
+            if fresh >> i & 1 != 0 {
                 let why = Ignored::Disabled { row: enable, bit: None };
-                self.ignore(Ordered::Read(RowId(row as u16)), why);
+                self.ignore(Ordered::Read(word.row), why);
             }
         }
     }

@@ -40,10 +40,10 @@ impl Drive {
             let of_number = absent.output_codes.iter().filter(|it| u32::from(it.0) == number);
             of_number.for_each(|(_, index)| asked |= 1 << index);
         }
-        let enabled_by = wiring.output_words.as_ref().map_or(&[][..], |it| &it.enabled_by);
         for (position, index) in &absent.output_positions {
-            let row = enabled_by.get(usize::from(position / 16));
-            let enabled = row.is_some_and(|row| self.bank.raw(*row) >> (position % 16) & 1 != 0);
+            let word = wiring.output_words.get(usize::from(position / 16));
+            let row = word.and_then(|it| it.enabled_by);
+            let enabled = row.is_some_and(|row| self.bank.raw(row) >> (position % 16) & 1 != 0);
             asked |= u64::from(enabled) << index;
         }
         for (digit, index) in &absent.digits {

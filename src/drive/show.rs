@@ -1,7 +1,7 @@
 //! What a row shows: what was written, or what the drive computes when somebody looks.
 
 use super::Drive;
-use crate::model::Shows;
+use crate::model::{Shown, Shows};
 use crate::time::Instant;
 use crate::vocabulary::{Output, Quantity, RowId};
 
@@ -11,14 +11,12 @@ impl Drive {
         match self.model.wiring.shows(row) {
             None | Some(Shows::PastAlarm(_)) => self.bank.raw(row),
             Some(Shows::Quantity(quantity)) => self.show_quantity(now, row, *quantity),
-            Some(Shows::Bits(bits)) => {
-                let outputs = self.outputs(now);
-                let bit = |(bit, shown): &(u8, crate::model::Shown)| {
-                    u32::from(shown.is_active(outputs)) << bit
-                };
-                bits.iter().map(bit).sum()
+            Some(Shows::Bits(bits)) => self.show_bits(now, bits),
+            Some(Shows::OutputWord(word)) => {
+                let word = &self.model.wiring.output_words[usize::from(*word)];
+                let enabled = word.enabled_by.map_or(0xFFFF, |row| self.bank.raw(row));
+                self.show_bits(now, &word.bits) & enabled
             }
-            Some(Shows::OutputWord(word)) => self.output_word(now, *word),
             Some(Shows::InputBits(of)) => self.input_bits(*of),
             Some(Shows::InputTerminals(monitor)) => self.monitor_inputs(now, *monitor),
             Some(Shows::OutputTerminals(monitor)) => self.monitor_outputs(now, *monitor),
@@ -58,7 +56,7 @@ impl Drive {
 
     /// `position` as the row of the actual position shows it, which has fewer bits than an axis has counts.
     pub(super) fn wrapped(&self, position: i64) -> i64 {
-        let row = self.model.row_showing(&Shows::Quantity(Quantity::PositionActual));
+        let row = self.model.wiring.row_of(Quantity::PositionActual);
         row.map_or(position, |row| {
             let kind = self.model.map.row(row).kind;
             kind.value(kind.wrapped(position))
@@ -85,8 +83,7 @@ impl Drive {
         let standing = self.standing_causes();
         let mut alarms = self.model.wiring.alarms.iter().filter(|it| standing.has(it.cause));
         let nominal = || {
-            let shows = Shows::Quantity(Quantity::BusVoltage);
-            let row = self.model.row_showing(&shows)?;
+            let row = self.model.wiring.row_of(Quantity::BusVoltage)?;
             let row = self.model.map.row(row);
             Some(row.kind.value(row.init) as f64 * row.unit.scale)
         };
@@ -131,15 +128,8 @@ impl Drive {
         }
     }
 
-    fn output_word(&self, now: Instant, word: u16) -> u32 {
-        let Some(words) = &self.model.wiring.output_words else { return 0 };
+    fn show_bits(&self, now: Instant, bits: &[(u8, Shown)]) -> u32 {
         let outputs = self.outputs(now);
-        let enabled =
-            words.enabled_by.get(usize::from(word)).map_or(0xFFFF, |row| self.bank.raw(*row));
-        let mine = words.positions.iter().filter(|(position, _)| position / 16 == word);
-        let bit = |(position, shown): &(u16, crate::model::Shown)| {
-            u32::from(shown.is_active(outputs)) << (position % 16)
-        };
-        mine.map(bit).sum::<u32>() & enabled
+        bits.iter().map(|(bit, shown)| u32::from(shown.is_active(outputs)) << bit).sum()
     }
 }

@@ -66,13 +66,4 @@ impl Model {
             rows.find(|row| row.access != Access::Write)
         })
     }
-
-    /// The row that shows it.
-    pub fn row_showing(&self, shows: &Shows) -> Option<RowId> {
-        if let Shows::Quantity(quantity) = shows {
-            return self.wiring.row_of(*quantity);
-        }
-        let mut rows = self.map.rows().map(|(id, _)| id);
-        rows.find(|id| self.wiring.shows(*id) == Some(shows))
-    }
 }

@@ -5,7 +5,7 @@ use super::terminals::{self, Codes, Layout, RawCodes, monitor, positions, split}
 use super::uses::{Uses, has_bit, writable};
 use super::wired::Wired;
 use crate::model::raw::RawOutputs;
-use crate::model::{NotSimulated, OutputWords, RowId, Shown, Shows, Terminals};
+use crate::model::{NotSimulated, OutputWord, RowId, Shown, Shows, Terminals};
 use crate::problem::{At, Path, Problem};
 use crate::vocabulary::{Named, Output};
 
@@ -55,9 +55,10 @@ pub(super) fn words(
     uses: &mut Uses,
     absent: &mut NotSimulated,
     names: &mut Names,
-) -> Option<OutputWords> {
+) -> Vec<OutputWord> {
     let by_terminals = raw.terminals.is_some();
-    let (raw, path) = (raw.words.as_ref()?, path().key("words"));
+    let Some(raw) = raw.words.as_ref() else { return Vec::new() };
+    let path = path().key("words");
     let (rows, enabled_by) = terminals::words(&raw.registers, &raw.enabled_by, &path, names);
     for (i, row) in rows.iter().enumerate() {
         let path = path.key("registers").index(i);
@@ -66,7 +67,12 @@ pub(super) fn words(
     let layout = Layout { moved: &raw.positions, words: raw.registers.len(), by_terminals };
     let positions = positions(codes, &layout, &path, names);
     let positions = split(&positions, &mut absent.output_positions);
-    Some(OutputWords { enabled_by, positions })
+    let word = |(i, row): (usize, &RowId)| {
+        let of_word = positions.iter().filter(|(position, _)| usize::from(position / 16) == i);
+        let bits = of_word.map(|(position, shown)| ((position % 16) as u8, *shown)).collect();
+        OutputWord { row: *row, enabled_by: enabled_by.get(i).copied(), bits }
+    };
+    rows.iter().enumerate().map(word).collect()
 }
 
 /// Rows whose bits show signals.

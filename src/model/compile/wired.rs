@@ -32,7 +32,7 @@ impl Wired {
             _ => Vec::new(),
         };
         let terminals = wiring.output_terminals.iter().flat_map(|it| &it.codes).map(|it| it.1);
-        let words = wiring.output_words.iter().flat_map(|it| &it.positions).map(|it| it.1);
+        let words = wiring.output_words.iter().flat_map(|it| &it.bits).map(|it| it.1);
         let bits = uses.shows.iter().flatten().flat_map(shown);
         let outputs = terminals.chain(words).map(|it| it.signal).chain(bits).collect();
 

@@ -16,7 +16,7 @@ pub use segments::{
     VelocitySegments,
 };
 pub use signals::{
-    BitOverride, CommandRows, HoldTime, InputWords, Monitor, NotSimulated, OutputWords, Reaction,
+    BitOverride, CommandRows, HoldTime, InputWords, Monitor, NotSimulated, OutputWord, Reaction,
     Shown, Shows, Terminals, Triggers,
 };
 
@@ -47,8 +47,8 @@ pub struct Wiring {
     pub shows: Vec<Option<Shows>>,
     /// The first row that shows each quantity, by its place in the catalogue.
     pub(super) quantity_rows: Vec<Option<RowId>>,
-    /// Output words.
-    pub output_words: Option<OutputWords>,
+    /// Output words, in order.
+    pub output_words: Vec<OutputWord>,
     /// The numbers that outputs go by.
     pub thresholds: Vec<(Threshold, Number)>,
     /// The row whose bits show as user-defined outputs.

@@ -13,7 +13,7 @@ impl Wiring {
             shows.zip(reacts).enumerate().filter(|(_, (shows, reacts))| *shows || *reacts);
         let thresholds = self.thresholds.iter().filter_map(|(_, number)| number.row());
         let hold = self.input_words.iter().flat_map(|it| &it.hold).map(|it| it.row);
-        let enabled_by = self.output_words.iter().flat_map(|it| &it.enabled_by).copied();
+        let enabled_by = self.output_words.iter().filter_map(|it| it.enabled_by);
         let terminals = self.output_terminals.iter();
         let terminals =
             terminals.flat_map(|it| it.functions.iter().copied().chain(it.normally_closed));

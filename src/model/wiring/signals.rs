@@ -88,13 +88,15 @@ pub struct Triggers {
     pub modifiers: Vec<(u8, Modifier)>,
 }
 
-/// Output words that a master reads in place of terminals.
+/// An output word that a master reads in place of terminals.
 #[derive(Debug)]
-pub struct OutputWords {
-    /// Their enable words, or none.
-    pub enabled_by: Vec<RowId>,
-    /// Position (16 times the word plus the bit) and signal.
-    pub positions: Vec<(u16, Shown)>,
+pub struct OutputWord {
+    /// The word.
+    pub row: RowId,
+    /// Its enable word: a bit shows while its bit there is 1. `None` for all of them.
+    pub enabled_by: Option<RowId>,
+    /// What each bit shows.
+    pub bits: Vec<(u8, Shown)>,
 }
 
 /// An output signal, or its opposite.
