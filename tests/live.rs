@@ -3,8 +3,9 @@
 
 use crate::kit::{bench_line, rig};
 use drivemu::bench::DeviceSpec;
-use drivemu::bus::{Command, DriveOrder};
+use drivemu::bus::{Command, CommandError, DriveOrder, Reply};
 use drivemu::event::{DeviceFault, DriveId};
+use drivemu::server::InboxError;
 use drivemu::testkit::{Rig, hex, live, to_hex};
 use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::{crc16, rtu};
@@ -142,6 +143,27 @@ async fn fault_rules_and_how_often_they_have_acted() {
     assert_eq!(busy, "01 83 06");
     let seen = answers(drive, &[(0, POSITION), (10, POSITION)]).await;
     assert_eq!(seen, [busy, "01 03 04 00 00 00 00".into()]);
+}
+
+/// While it is served, a line takes commands; one that it refuses says why.
+#[tokio::test(start_paused = true)]
+async fn commands_to_a_line_that_is_served() {
+    let healthy = stepper().ask(STATUS);
+    let (mut master, line, serve) = live::commanded(stepper());
+    let serving = tokio::spawn(serve);
+    let raise = |drive| Command::Drive(drive, DriveOrder::Raise(AlarmCause::OverVoltage));
+    assert_eq!(line.command(raise(FIRST)).await, Ok(Reply::Done));
+    let refused = line.command(raise(DriveId(7))).await.expect_err("there is one drive");
+    assert_eq!(refused, InboxError::Refused(CommandError::NoDrive(7)));
+    let request = rtu::encode(1, &hex(STATUS).expect("hex")[1..]);
+    master.write_all(&request).await.expect("somebody reads");
+    let mut answer = vec![0; healthy.split(' ').count() + 2];
+    master.read_exact(&mut answer).await.expect("an answer");
+    assert_ne!(to_hex(&answer[..answer.len() - 2]), healthy);
+    line.stop().await;
+    serving.await.expect("no panic").expect("a clean end");
+    assert_eq!(master.read(&mut [0; 8]).await.expect("an end"), 0);
+    assert_eq!(line.command(raise(FIRST)).await, Err(InboxError::Ended));
 }
 
 /// A reply that was held back for the next request leaves with it, on the stream.

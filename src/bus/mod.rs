@@ -144,9 +144,11 @@ impl Bus {
         self.readdress();
     }
 
-    /// Tells frames on all links apart in another way from now on. What was half received is forgotten.
+    /// Tells frames on all serial links apart in another way from now on. What was half received is forgotten. Modbus
+    /// TCP stays as it is.
     pub fn reframe_all(&mut self, framing: Framing) {
-        self.links.values_mut().for_each(|link| link.line = Line::new(framing));
+        let serial = self.links.values_mut().filter(|link| !link.tcp);
+        serial.for_each(|link| link.line = Line::new(framing));
     }
 
     /// Closes a link. What was half received on it is forgotten, and what was to be sent on it.

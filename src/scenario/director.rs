@@ -22,8 +22,8 @@ pub struct Verdict {
     pub failure: Option<String>,
 }
 
-/// The steps of one line, and how far they are.
-#[derive(Debug, Clone)]
+/// The steps of one line, and how far they are. By default there are none.
+#[derive(Debug, Clone, Default)]
 pub struct Director {
     steps: Vec<ScenarioStep>,
     limit: Option<Instant>,
@@ -37,11 +37,17 @@ pub struct Director {
     verdicts: Vec<Verdict>,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 enum StepState {
+    #[default]
     Waits,
-    Repeats { left: u32, at: Instant },
-    Expects { until: Instant },
+    Repeats {
+        left: u32,
+        at: Instant,
+    },
+    Expects {
+        until: Instant,
+    },
 }
 
 impl Director {
@@ -72,7 +78,7 @@ impl Director {
     /// Lets time pass for the bus up to `now`, and carries out what comes meanwhile, each thing at its own instant;
     /// of one instant the bus's first.
     pub fn advance_to(&mut self, bus: &mut Bus, now: Instant) {
-        loop {
+        while !self.is_over() {
             let woken = bus.poll_at().map(|wake| wake.at);
             let next = [woken, self.due].into_iter().flatten().min();
             let Some(at) = next.filter(|at| *at <= now) else { break };
@@ -84,6 +90,9 @@ impl Director {
 
     /// Carries out what is to be done right now: after input, and whatever else may have changed something.
     pub fn poll(&mut self, bus: &mut Bus) {
+        if self.is_over() {
+            return;
+        }
         while self.go_on(bus) {}
         self.due = self.next_poll(bus);
     }

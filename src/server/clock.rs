@@ -1,6 +1,8 @@
 //! The wall clock, at a rate: the only file that asks what time it is.
 
 use crate::time::{Duration, Instant};
+use std::pin::Pin;
+use std::task::{Context, Poll};
 
 /// Maps the wall to the emulated world.
 ///
@@ -56,18 +58,27 @@ impl Clock {
         wall_now() >= at
     }
 
-    /// Waits for a moment of the wall; for ever without one.
-    pub async fn until_wall(at: Option<tokio::time::Instant>) {
-        match at {
-            Some(at) => tokio::time::sleep_until(at).await,
-            None => std::future::pending().await,
-        }
-    }
-
     /// Waits `time` of the wall, whatever the rate: for ports, which live out there.
     #[allow(clippy::disallowed_methods)] // This is the clock.
     pub async fn wall(time: Duration) {
         tokio::time::sleep(time).await;
+    }
+
+    /// The same for those who poll.
+    #[allow(clippy::disallowed_methods)] // This is the clock.
+    pub fn wall_timer(time: Duration) -> WallTimer {
+        WallTimer(Box::pin(tokio::time::sleep(time)))
+    }
+}
+
+/// A timer of the wall.
+#[derive(Debug)]
+pub struct WallTimer(Pin<Box<tokio::time::Sleep>>);
+
+impl WallTimer {
+    /// Waits until it is over.
+    pub fn poll_over(&mut self, cx: &mut Context<'_>) -> Poll<()> {
+        self.0.as_mut().poll(cx)
     }
 }
 

@@ -1,16 +1,18 @@
-//! Reads files that people give: whole, as text, and not without end.
+//! Reads files that people give, model files among them: whole, as text, and not without end.
 //!
 //! Deliberately one bound for all of them: a file beyond it is no model, bench, scenario or state file, whatever it
 //! says. What is no file, such as a FIFO, is read too, if somebody writes it.
 
+use crate::bench::{BuiltinLibrary, Library, no_model};
 use crate::problem::bounds;
 use crate::time::Duration;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
 use rustix::io::Errno;
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How long a FIFO, a terminal or a pipe may say nothing.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -66,6 +68,60 @@ fn wait_for_bytes(file: &File) -> io::Result<()> {
         }
         Ok(_) | Err(Errno::INTR) => Ok(()),
         Err(error) => Err(error.into()),
+    }
+}
+
+/// Finds embedded models by name and others by path.
+#[derive(Debug, Clone)]
+pub struct FileLibrary {
+    base: PathBuf,
+    /// The files that were read.
+    read: RefCell<Vec<PathBuf>>,
+}
+
+impl FileLibrary {
+    /// Paths are relative to `base`.
+    pub fn new(base: impl Into<PathBuf>) -> Self {
+        Self { base: base.into(), read: RefCell::default() }
+    }
+
+    /// The files that were read so far.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.read.borrow().clone()
+    }
+}
+
+impl Library for FileLibrary {
+    fn fetch(&self, name: &str) -> Result<(String, String), String> {
+        if let Ok(found) = BuiltinLibrary.fetch(name) {
+            return Ok(found);
+        }
+        if !is_path(name) {
+            return Err(no_model(name));
+        }
+        let path = self.base.join(name);
+        self.read.borrow_mut().push(path.clone());
+        let text = read_text(&path)
+            .map_err(|error| format!("cannot read {}: {}", path.display(), plain(&error)))?;
+        Ok((path.display().to_string(), text))
+    }
+}
+
+/// Does `name` mean a file rather than a built-in?
+pub fn is_path(name: &str) -> bool {
+    let ending = Path::new(name).extension();
+    name.contains('/') || ending.is_some_and(|ending| ending == "yaml" || ending == "yml")
+}
+
+/// An I/O error without its number.
+pub fn plain(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "no such file or directory".into(),
+        ErrorKind::PermissionDenied => "permission denied".into(),
+        ErrorKind::IsADirectory => "this is a directory".into(),
+        ErrorKind::StorageFull => "no space left on the device".into(),
+        ErrorKind::InvalidData => "this is not UTF-8 text".into(),
+        _ => error.to_string(),
     }
 }
 

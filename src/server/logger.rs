@@ -4,7 +4,7 @@
 //! much when it can write again. An output that fails ends there; that is told at once, and again when the run ends.
 
 use super::destination::Destination;
-use super::library::plain;
+use super::input::plain;
 use super::sink::Sink;
 use crate::bus::Bus;
 use crate::event::Event;

@@ -1,34 +1,40 @@
 //! The shell: the only place that waits, opens and asks what time it is.
 //!
-//! One task owns one [`crate::bus::Bus`]: it reads its port, sleeps until the bus wants to be woken, and sends what
-//! the bus gives it. [`run`](fn@run) opens all lines of a bench, says that it is ready, and ends on a signal.
+//! One task owns one line: a [`LineServer`] takes bytes from its ports and commands from its inbox, sleeps until the
+//! bus wants to be woken, and sends what the bus gives it. [`run`](fn@run) opens all lines of a bench, says that it is
+//! ready, and ends on a signal.
 
 mod clock;
 mod destination;
 mod diagnostics;
+mod endpoints;
+mod inbox;
 mod input;
-mod library;
+mod line_server;
 mod logger;
 mod outputs;
-mod path_claims;
-mod path_lock;
+mod paths;
 pub mod port;
-mod ready;
+mod ports;
 mod run;
-mod scenario_run;
-mod serve;
 mod sink;
-mod stop;
 mod store;
 
 pub use clock::Clock;
 pub use destination::Destination;
 pub use diagnostics::{Diagnostics, diagnose, said, say};
-pub use input::read_text;
-pub use library::{FileLibrary, is_path, plain};
+pub use inbox::{Inbox, InboxError, LineHandle};
+pub use input::{FileLibrary, is_path, plain, read_text};
+pub use line_server::{LineServer, Subscriber};
 pub use logger::{LogFormat, Logger};
-pub use path_claims::PathClaims;
+pub use paths::PathClaims;
+pub use ports::PortFrames;
 pub use run::{Ended, Judged, Play, RunError, RunOptions, run};
-pub use scenario_run::ScenarioRun;
-pub use serve::{Frames, LineServer, Reopen, serve_stream, serve_tty};
 pub use store::Store;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What lines share. A line that went down must not take the others along.
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}

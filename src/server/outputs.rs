@@ -4,11 +4,12 @@
 //! full stops no drive.
 
 use super::destination::{Destination, Written};
+use super::endpoints::Ready;
+use super::line_server::LineServer;
+use super::lock;
 use super::logger::Logger;
-use super::path_lock::PathLock;
-use super::ready::Ready;
+use super::paths::PathLock;
 use super::run::{RunError, RunOptions};
-use super::serve::lock;
 use super::store::Store;
 use std::io;
 use std::path::Path;
@@ -18,9 +19,9 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug)]
 pub struct OutputFiles {
     /// The log, shared by all lines.
-    pub log: Arc<Mutex<Logger>>,
+    log: Arc<Mutex<Logger>>,
     /// Where drives keep what they store, shared by all lines.
-    pub store: Option<Arc<Mutex<Store>>>,
+    store: Option<Arc<Mutex<Store>>>,
     ready: Option<(Destination, Option<Written>)>,
     /// Keeps other runs from the ready file.
     _mark: Option<PathLock>,
@@ -48,6 +49,14 @@ impl OutputFiles {
         let store = options.store.take().map(|store| Arc::new(Mutex::new(store)));
         let ready = options.ready_file.take().map(|ready| (ready, None));
         Ok(Self { log: Arc::new(Mutex::new(log)), store, ready, _mark: mark })
+    }
+
+    /// Has `line` write its events to the log, and what its drives store to the state file.
+    pub fn attach(&self, line: &mut LineServer) {
+        line.subscribe(Box::new(self.log.clone()));
+        if let Some(store) = &self.store {
+            line.keep_in(store.clone());
+        }
     }
 
     /// Every port is open: says so to whoever waits for the ready file, for whom the state file is there by then.

@@ -5,7 +5,7 @@
 
 use super::destination::{FileId, folder, places};
 use super::input;
-use super::library::plain;
+use super::input::plain;
 use crate::bench::StateFile;
 use crate::bus::Bus;
 use crate::event::DriveId;

@@ -30,23 +30,29 @@
 
 use super::Rig;
 use super::rig::InUse;
-use crate::server::{Clock, Frames, LineServer, Logger, ScenarioRun, serve_stream};
+use crate::server::port::{MASTER, StreamPort};
+use crate::server::{Clock, LineHandle, LineServer, Logger, PortFrames};
 use std::future::Future;
 use std::io;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use tokio::io::DuplexStream;
-use tokio::sync::Notify;
 
 /// A stream to put a master on, in place of the one that asked `rig` until now, and the future that serves its drives
 /// at the other end. Run the future beside the master (`tokio::spawn`, `try_join!`): the rig's time goes on when it is
 /// first polled, and it ends when the stream is dropped.
 pub fn stream(rig: Rig) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
+    let (master, _, serve) = served(rig, None);
+    (master, serve)
+}
+
+/// The same, with a handle that gives commands to the line while it is served: terminals, alarms, faults.
+pub fn commanded(rig: Rig) -> (DuplexStream, LineHandle, impl Future<Output = io::Result<()>>) {
     served(rig, None)
 }
 
-/// The same, with the event log in the file at `log`, one JSON object a line, from the beginning of the rig's time. It
-/// is whole when the future has ended.
+/// The same as [`stream`], with the event log in the file at `log`, one JSON object a line, from the beginning of the
+/// rig's time. It is whole when the future has ended.
 ///
 /// # Errors
 /// If the file can't be created.
@@ -54,29 +60,28 @@ pub fn logged(
     rig: Rig,
     log: &Path,
 ) -> io::Result<(DuplexStream, impl Future<Output = io::Result<()>> + use<>)> {
-    let logger = Logger::to_file(log)?;
-    Ok(served(rig, Some(logger)))
+    let (master, _, serve) = served(rig, Some(Logger::to_file(log)?));
+    Ok((master, serve))
 }
 
 fn served(
     rig: Rig,
     logger: Option<Logger>,
-) -> (DuplexStream, impl Future<Output = io::Result<()>>) {
+) -> (DuplexStream, LineHandle, impl Future<Output = io::Result<()>>) {
     let (master, drive) = tokio::io::duplex(4096);
     let InUse { name, wire, bus, director, link, now, events } = rig.into_served();
+    let (handle, inbox) = LineHandle::new();
     let log = logger.map(|mut logger| {
         events.iter().for_each(|event| logger.log(event, &name, &bus));
-        Arc::new(Mutex::new(logger))
+        Box::new(Arc::new(Mutex::new(logger)))
     });
-    let scenario = director.map(|it| ScenarioRun::new(it, Arc::new(Notify::new())));
     let serve = async move {
-        let (clock, frames) = (Clock::start_at(now, 1.0), Frames::Serial(wire));
-        serve_stream(
-            LineServer { name, bus, clock, frames, log, store: None, scenario },
-            link,
-            drive,
-        )
-        .await
+        let clock = Clock::start_at(now, 1.0);
+        let mut line = LineServer::new(name, bus, wire, clock, inbox).with_director(director);
+        log.into_iter().for_each(|log| line.subscribe(log));
+        let port = Box::new(StreamPort::new(drive));
+        line.open_for(port, PortFrames::Serial, MASTER, link);
+        line.serve().await
     };
-    (master, serve)
+    (master, handle, serve)
 }

@@ -25,11 +25,11 @@ pub struct Rig {
     framing: Framing,
     seed: u64,
     /// The scenario as it was before its first step.
-    scenario: Option<Director>,
+    scenario: Director,
     /// Something has happened to it since it was switched on: it can't be set up any more.
     used: bool,
     bus: Bus,
-    director: Option<Director>,
+    director: Director,
     link: LinkId,
     now: Instant,
     events: Vec<Event>,
@@ -43,7 +43,7 @@ pub(super) struct InUse {
     pub(super) name: String,
     pub(super) wire: WireSpec,
     pub(super) bus: Bus,
-    pub(super) director: Option<Director>,
+    pub(super) director: Director,
     pub(super) link: LinkId,
     pub(super) now: Instant,
     pub(super) events: Vec<Event>,
@@ -173,21 +173,19 @@ impl Rig {
     pub fn with_scenario(mut self, text: &str) -> Result<Self, Vec<Problem>> {
         self.must_be_new("with_scenario");
         let scenario = scenario::parse(text, std::slice::from_ref(&self.line))?;
-        self.scenario = scenario.directors().next();
+        self.scenario = scenario.directors().next().unwrap_or_default();
         Ok(self.switched_on())
     }
 
     /// What became of the steps of its scenario so far.
     pub fn verdicts(&self) -> &[Verdict] {
-        self.director.as_ref().map_or(&[], Director::verdicts)
+        self.director.verdicts()
     }
 
     /// Ends the scenario: what has not come has failed.
     pub fn finish(&mut self) -> &[Verdict] {
         self.used = true;
-        if let Some(director) = &mut self.director {
-            director.finish(self.now);
-        }
+        self.director.finish(self.now);
         self.drain();
         self.verdicts()
     }
@@ -201,10 +199,10 @@ impl Rig {
             line,
             framing,
             seed: 0,
-            scenario: None,
+            scenario: Director::default(),
             used: false,
             bus,
-            director: None,
+            director: Director::default(),
             link,
             now: Instant::ZERO,
             events: Vec::new(),
@@ -382,16 +380,11 @@ impl Rig {
 
     /// Lets what is due happen.
     fn pass(&mut self) {
-        match &mut self.director {
-            Some(director) => director.advance_to(&mut self.bus, self.now),
-            None => self.bus.advance_to(self.now),
-        }
+        self.director.advance_to(&mut self.bus, self.now);
     }
 
     fn drain(&mut self) -> Vec<u8> {
-        if let Some(director) = &mut self.director {
-            director.poll(&mut self.bus);
-        }
+        self.director.poll(&mut self.bus);
         let mut sent = Vec::new();
         while let Some(output) = self.bus.poll_output() {
             match output {

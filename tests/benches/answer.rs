@@ -65,8 +65,10 @@ fn median(calls: u32, mut call: impl FnMut()) -> f64 {
 mod pseudo_terminal {
     use super::*;
     use drivemu::server::port::Pty;
+    use std::future::poll_fn;
     use std::io::{Read, Write};
     use std::path::PathBuf;
+    use std::sync::mpsc::Sender;
 
     /// Both servers run in threads of their own; the two are asked in turn, so that a machine whose speed
     /// drifts drifts for both.
@@ -110,10 +112,13 @@ mod pseudo_terminal {
     }
 
     fn serve_echo() -> PathBuf {
-        serve(|mut pty| async move {
+        serve(|path| async move {
+            let mut pty = Pty::open(None).expect("a pseudo-terminal");
+            path.send(pty.path().to_owned()).expect("somebody waits");
             let mut buffer = [0; 256];
             loop {
-                let input = pty.read(&mut buffer).await.expect("bytes");
+                let read = poll_fn(|cx| pty.poll_read(cx, &mut buffer));
+                let input = read.await.expect("bytes");
                 pty.write_now(&buffer[..input.len]).expect("sent");
             }
         })
@@ -121,38 +126,33 @@ mod pseudo_terminal {
 
     fn serve_drive() -> PathBuf {
         use drivemu::bench::{Device, WireSpec};
-        use drivemu::server::port::Tty;
-        use drivemu::server::{Clock, Frames, LineServer, serve_tty};
-        serve(|pty| async move {
+        use drivemu::server::port::TtyPort;
+        use drivemu::server::{Clock, LineHandle, LineServer, PortFrames};
+        serve(|path| async move {
             let model = Builtin::find(Builtin::default_name()).expect("the default model");
             let model = model.load(&Default::default()).expect("a valid model");
             let device = Device::new(model.into(), &Default::default()).expect("no settings");
             let mut bus = Bus::new();
             bus.add(device.model.clone(), &device.setups[0], 0);
             let wire = WireSpec::of(std::slice::from_ref(&device), None, None, false);
-            let (clock, frames) = (Clock::start(1.0), Frames::Serial(wire));
-            let line = LineServer {
-                name: "line".into(),
-                bus,
-                clock,
-                frames,
-                log: None,
-                store: None,
-                scenario: None,
-            };
-            serve_tty(line, Tty::Pty(pty), Box::new(|_| Ok(Tty::Pty(Pty::open(None)?)))).await;
+            let port = TtyPort::pty("line".into(), None, wire.mode.settings);
+            let port = port.expect("a pseudo-terminal");
+            let opened = port.paths().0.expect("it is open");
+            path.send(opened.into()).expect("somebody waits");
+            let (_handle, inbox) = LineHandle::new();
+            let mut line = LineServer::new("line".into(), bus, wire, Clock::start(1.0), inbox);
+            line.open(Box::new(port), PortFrames::Serial);
+            line.serve().await.expect("it does not end");
         })
     }
 
-    fn serve<F: Future<Output = ()>>(serve: impl FnOnce(Pty) -> F + Send + 'static) -> PathBuf {
+    fn serve<F: Future<Output = ()>>(
+        serve: impl FnOnce(Sender<PathBuf>) -> F + Send + 'static,
+    ) -> PathBuf {
         let (path, opened) = std::sync::mpsc::channel();
         std::thread::spawn(move || {
             let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-            runtime.expect("a runtime").block_on(async move {
-                let pty = Pty::open(None).expect("a pseudo-terminal");
-                path.send(pty.path().to_owned()).expect("somebody waits");
-                serve(pty).await;
-            });
+            runtime.expect("a runtime").block_on(serve(path));
         });
         opened.recv().expect("a path")
     }

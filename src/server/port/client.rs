@@ -14,12 +14,9 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::{Sender, UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::AbortHandle;
 
-use super::said;
-use super::tcp::{ClientId, TcpEvent};
+use super::tcp::TcpEvent;
+use super::{ClientId, INPUT, said};
 use crate::time::Duration;
-
-/// Bytes that a reader hands over at once; a Modbus frame has 260 at most.
-const CHUNK: usize = 1024;
 
 /// Bytes that may wait for a client on top of what the system keeps for it: some hundred answers.
 const BACKLOG: usize = 64 * 1024;
@@ -128,7 +125,7 @@ fn keep_alive(stream: &TcpStream) -> rustix::io::Result<()> {
 
 /// The reader: hands on what arrives, in order, until the client leaves.
 async fn listen(id: ClientId, stream: Arc<TcpStream>, report: Sender<TcpEvent>) {
-    let mut buf = [0; CHUNK];
+    let mut buf = [0; INPUT];
     let end = loop {
         match read(&stream, &mut buf).await {
             Ok(0) => break None,

@@ -1,103 +1,97 @@
 //! The ports: where bytes enter and leave the process.
 //!
-//! A port moves bytes and tells who is there. It deliberately knows no Modbus, no frame and no
-//! emulated time: it never waits on a clock, so coming back to a port that was unplugged is the
-//! caller's job. Everything here runs on one thread, inside a Tokio runtime.
+//! A [`Port`] moves bytes and tells who is there. It deliberately knows no Modbus, no frame and no emulated time.
+//! Whatever kind it is, it is asked for its next event by polling, so that one task can serve several.
 //!
-//! All three keep the same promise about answers: **one write a whole answer, and never a wait**. A line
+//! All kinds keep the same promise about answers: **one write a whole answer, and never a wait**. A line
 //! that waited for a slow reader would shift the time of every drive on it. What a reader does not take is
 //! lost, as on a wire; only a TCP client, which was promised a stream, is disconnected instead.
-//!
-//! [`Pty`] and [`Serial`] carry one line each and look alike, hence [`Tty`]. A [`Listener`] carries many
-//! clients and speaks in events.
 
 mod client;
 pub mod pty;
 pub mod serial;
+mod stream;
 mod symlink;
 pub mod tcp;
+mod tty;
 mod tuning;
 
+use crate::serial::Settings;
+use rustix::event::{PollFd, Timespec, poll};
+use rustix::io::retry_on_intr;
+use std::fmt;
 use std::io;
+use std::task::{Context, Poll};
 
 pub use pty::Pty;
 pub use serial::Serial;
-pub use tcp::{ClientId, Listener, TcpEvent};
+pub use stream::{MASTER, StreamPort};
+pub use tcp::{Listener, TcpEvent, TcpPort};
+pub use tty::{Input, Left, TtyPort};
 
-/// A port that carries one line: a pseudo-terminal of ours or a real serial port.
+/// Bytes that a port hands over at once; a Modbus frame has 260 at most.
+pub const INPUT: usize = 1024;
+
+/// A master at a port: a TCP client, or whoever has a terminal open. Never used twice at one port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClientId(pub u64);
+
+/// A way in for masters.
+pub trait Port: fmt::Debug + Send {
+    /// What happens next. Bytes go to the front of `input`.
+    fn poll_event(&mut self, cx: &mut Context<'_>, input: &mut [u8; INPUT]) -> Poll<PortEvent>;
+
+    /// Has something arrived of which [`Port::poll_event`] has not told yet? After a stall of the process a timer may
+    /// be told of before it is.
+    fn is_anything_waiting(&mut self) -> bool;
+
+    /// Sends an answer in one write. Never waits. To a client that is gone, nothing.
+    fn send(&mut self, to: ClientId, frame: &[u8]);
+
+    /// Parts with a client whose requests can't be told apart any more.
+    fn close(&mut self, client: ClientId);
+
+    /// The line talks at another speed or in another format from now on, what was sent before excepted.
+    fn set_line(&mut self, settings: Settings);
+
+    /// The baud and the stop bits that the master has set at its end, where that can be seen.
+    fn master(&self) -> Option<(u32, u8)>;
+}
+
+/// What happened at a port.
+///
+/// Every `Opened` is followed by at most one `Closed` or `Lost`, and nothing of a client comes after that.
 #[derive(Debug)]
-pub enum Tty {
-    /// Our own pseudo-terminal.
-    Pty(Pty),
-    /// A device that others made.
-    Serial(Serial),
-}
-
-/// What was read from a terminal.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Input {
-    /// Bytes; at least one, unless somebody has left or nothing was there.
-    pub len: usize,
-    /// Have all programs left the other end?
-    pub left: Left,
-}
-
-/// When the last program has closed a terminal, if it has. A real port does not tell.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Left {
-    /// It has not.
-    #[default]
-    Nobody,
-    /// Before these bytes, which are of the next program.
-    Before,
-    /// Nobody is there now, and all that was sent has been read.
-    After,
-}
-
-impl Tty {
-    /// Waits for bytes, or for the last program to leave. Cancel-safe.
-    ///
-    /// # Errors
-    /// `NotConnected` when a serial port was unplugged; a pseudo-terminal of ours can't be.
-    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
-        match self {
-            Self::Pty(pty) => pty.read(buf).await,
-            Self::Serial(serial) => serial.read(buf).await.map(Input::bytes),
-        }
-    }
-
-    /// Takes what is waiting now; 0 bytes means nothing is.
-    ///
-    /// # Errors
-    /// As for [`Tty::read`].
-    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
-        match self {
-            Self::Pty(pty) => pty.try_read(buf),
-            Self::Serial(serial) => serial.try_read(buf).map(Input::bytes),
-        }
-    }
-
-    /// Sends an answer in one write and says how many of its bytes were taken; the rest is lost.
-    ///
-    /// # Errors
-    /// As for [`Tty::read`].
-    pub fn write_now(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Pty(pty) => pty.write_now(bytes),
-            Self::Serial(serial) => serial.write_now(bytes),
-        }
-    }
-}
-
-impl Input {
-    fn bytes(len: usize) -> Self {
-        Self { len, left: Left::Nobody }
-    }
+pub enum PortEvent {
+    /// A master is there, or may be.
+    Opened(ClientId),
+    /// Bytes of a master, in order, cut anywhere.
+    Bytes {
+        /// Whose.
+        from: ClientId,
+        /// How many.
+        len: usize,
+        /// Before these bytes another program took the place of the one that was there. A frame may have begun with
+        /// the first and end with the second.
+        replaced: bool,
+    },
+    /// A master has left: what it said last has ended.
+    Closed(ClientId),
+    /// The way to a master is gone, in the middle of whatever it said.
+    Lost(ClientId),
+    /// Nothing will come here any more.
+    Ended(io::Result<()>),
 }
 
 /// An error that still matches by kind and reads as a sentence.
 fn said(kind: io::ErrorKind, sentence: impl Into<String>) -> io::Error {
     io::Error::new(kind, sentence.into())
+}
+
+/// Is there something to read at one of `watched`, right now?
+fn is_any_ready(watched: &mut [PollFd<'_>]) -> bool {
+    let now = Timespec { tv_sec: 0, tv_nsec: 0 };
+    retry_on_intr(|| poll(watched, Some(&now))).is_ok_and(|ready| ready > 0)
 }
 
 /// Has the other end of a terminal gone? Linux and macOS tell it in different numbers.

@@ -10,12 +10,13 @@
 //! had put on the terminal. `presence.rs` counts who is there, so that we can do both.
 
 use std::ffi::OsString;
-use std::future::pending;
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
+use std::task::{Context, Poll, ready};
 
+use rustix::event::{PollFd, PollFlags};
 use rustix::fs::{Mode, OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::io::{Errno, FdFlags, fcntl_setfd, retry_on_intr};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
@@ -26,7 +27,7 @@ use tokio::io::unix::AsyncFd;
 use tracing::warn;
 
 use super::symlink::PortSymlink;
-use super::{Input, Left, is_hang_up, said};
+use super::{Input, Left, is_any_ready, is_hang_up, said};
 use presence::{Presence, Since};
 
 mod presence;
@@ -76,46 +77,59 @@ impl Pty {
         self.link.as_ref().map(PortSymlink::at)
     }
 
-    /// Waits for bytes, or for the last program to close it. Cancel-safe.
+    /// Waits for bytes, or for the last program to close it.
     ///
     /// # Errors
     /// What the system says, never a hang-up.
-    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
+    pub fn poll_read(&mut self, cx: &mut Context<'_>, buf: &mut [u8]) -> Poll<io::Result<Input>> {
         if buf.is_empty() {
-            return Ok(Input::default());
+            return Poll::Ready(Ok(Input::default()));
         }
         loop {
             if self.deserted {
-                return self.try_read(buf);
+                return Poll::Ready(self.try_read(buf));
             }
-            let len = tokio::select! {
-                biased;
-                ready = self.master.readable() => {
-                    match ready?.try_io(|master| Ok(read(master.as_fd(), buf)?)) {
-                        Ok(Ok(len)) if len > 0 => len,
-                        Ok(Err(e)) if !is_hang_up(&e) => return Err(e),
-                        // Can't be while we hold the slave. If a system thinks otherwise, the line is as good as
-                        // idle, and asking again would only burn the processor: readiness stays set after a hang-up.
-                        Ok(_) => pending().await,
-                        Err(_would_block) => continue,
-                    }
-                }
-                changed = changes(self.presence.as_ref()) => {
-                    changed?;
+            let len = match self.poll_bytes(cx, buf)? {
+                Poll::Ready(len) => len,
+                Poll::Pending => {
+                    let Some(presence) = &self.presence else { return Poll::Pending };
+                    ready!(presence.poll_changes(cx))?;
                     or_nothing(read(self.master.as_fd(), buf))?
                 }
             };
             let input = self.told(len);
             if input != Input::default() {
-                return Ok(input);
+                return Poll::Ready(Ok(input));
             }
         }
+    }
+
+    /// Waits for bytes, 1 at least.
+    fn poll_bytes(&mut self, cx: &mut Context<'_>, buf: &mut [u8]) -> Poll<io::Result<usize>> {
+        loop {
+            let mut ready = ready!(self.master.poll_read_ready(cx))?;
+            match ready.try_io(|master| Ok(read(master.as_fd(), buf)?)) {
+                Ok(Ok(len)) if len > 0 => return Poll::Ready(Ok(len)),
+                Ok(Err(e)) if !is_hang_up(&e) => return Poll::Ready(Err(e)),
+                // Can't be while we hold the slave. If a system thinks otherwise, the line is as good as
+                // idle, and asking again would only burn the processor: readiness stays set after a hang-up.
+                Ok(_) => return Poll::Pending,
+                Err(_would_block) => {}
+            }
+        }
+    }
+
+    /// Has something been sent, or the last program left, of which [`Pty::poll_read`] has not told yet?
+    pub fn is_anything_waiting(&mut self) -> bool {
+        let since = self.presence.as_mut().map_or(Since::Same, Presence::poll);
+        self.deserted |= since != Since::Same;
+        self.deserted || is_any_ready(&mut [PollFd::new(&self.master, PollFlags::IN)])
     }
 
     /// Takes what is waiting now; 0 bytes means nothing is.
     ///
     /// # Errors
-    /// As for [`Pty::read`].
+    /// As for [`Pty::poll_read`].
     pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<Input> {
         let len = or_nothing(read(self.master.as_fd(), buf))?;
         Ok(self.told(len))
@@ -196,14 +210,6 @@ impl Pty {
     /// It leaves that to the last close, which never comes here, and without root every open would fail as busy.
     fn unlock(&self) {
         let _ = ioctl_tiocnxcl(&self.slave);
-    }
-}
-
-/// Waits for notices; for ever where there are none.
-async fn changes(presence: Option<&Presence>) -> io::Result<()> {
-    match presence {
-        Some(presence) => presence.changes().await,
-        None => pending().await,
     }
 }
 

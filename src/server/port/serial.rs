@@ -8,8 +8,10 @@
 
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::FileTypeExt;
+use std::pin::Pin;
+use std::task::{Context, Poll, ready};
 
-use tokio::io::AsyncReadExt;
+use tokio::io::{AsyncRead, ReadBuf};
 use tokio_serial::{SerialPort, SerialStream};
 
 use super::tuning::{Tuning, is_pseudo_terminal};
@@ -83,36 +85,28 @@ impl Serial {
         Ok(self.stream.bytes_to_write()?)
     }
 
-    /// Waits for bytes; at least one arrives, unless `buf` is empty. Cancel-safe.
+    /// Waits for bytes; at least one arrives, unless `buf` is empty.
     ///
     /// # Errors
     /// `NotConnected` when the port was unplugged.
-    pub async fn read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
+    pub fn poll_read(&mut self, cx: &mut Context<'_>, buf: &mut [u8]) -> Poll<io::Result<usize>> {
         if buf.is_empty() {
-            return Ok(0);
+            return Poll::Ready(Ok(0));
         }
-        let done = self.stream.read(buf).await;
-        self.some(done)
+        let mut buf = ReadBuf::new(buf);
+        let done = ready!(Pin::new(&mut self.stream).poll_read(cx, &mut buf));
+        Poll::Ready(self.some(done.map(|()| buf.filled().len())))
     }
 
-    /// Takes what is waiting now; 0 means nothing is.
-    ///
-    /// # Errors
-    /// As for [`Serial::read`].
-    pub fn try_read(&mut self, buf: &mut [u8]) -> io::Result<usize> {
-        if buf.is_empty() {
-            return Ok(0);
-        }
-        match self.stream.try_read(buf) {
-            Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),
-            done => self.some(done),
-        }
+    /// Has something arrived that was not read yet? So has the end of a port that was unplugged.
+    pub fn is_anything_waiting(&self) -> bool {
+        self.stream.bytes_to_read().map_or(true, |bytes| bytes > 0)
     }
 
     /// Sends an answer in one write and says how many of its bytes were taken; the rest is lost.
     ///
     /// # Errors
-    /// As for [`Serial::read`].
+    /// As for [`Serial::poll_read`].
     pub fn write_now(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.stream.try_write(bytes) {
             Err(e) if e.kind() == ErrorKind::WouldBlock => Ok(0),
@@ -171,6 +165,7 @@ fn refusal(path: &str, error: &tokio_serial::Error) -> io::Error {
 mod tests {
     use super::super::Pty;
     use super::*;
+    use std::future::poll_fn;
     use std::time::Duration;
     use tokio::time::timeout;
 
@@ -186,7 +181,8 @@ mod tests {
 
     async fn heard(serial: &mut Serial) -> io::Result<Vec<u8>> {
         let mut buf = [0; 300];
-        let count = timeout(Duration::from_secs(2), serial.read(&mut buf)).await.unwrap()?;
+        let read = poll_fn(|cx| serial.poll_read(cx, &mut buf));
+        let count = timeout(Duration::from_secs(2), read).await.unwrap()?;
         Ok(buf[..count].to_vec())
     }
 
@@ -200,14 +196,14 @@ mod tests {
             got.extend(heard(&mut serial).await.unwrap());
         }
         assert_eq!(got, all);
-        assert_eq!(serial.try_read(&mut [0; 8]).unwrap(), 0, "nothing waits now");
-        assert_eq!(serial.read(&mut []).await.unwrap(), 0);
+        assert!(!serial.is_anything_waiting());
 
         assert_eq!(serial.write_now(&all).unwrap(), 256);
         let mut buf = [0; 300];
         let mut got = Vec::new();
         while got.len() < all.len() {
-            let input = timeout(Duration::from_secs(2), pty.read(&mut buf)).await.unwrap().unwrap();
+            let read = poll_fn(|cx| pty.poll_read(cx, &mut buf));
+            let input = timeout(Duration::from_secs(2), read).await.unwrap().unwrap();
             got.extend_from_slice(&buf[..input.len]);
         }
         assert_eq!(got, all);
@@ -222,8 +218,7 @@ mod tests {
             let read = heard(&mut serial).await.unwrap_err();
             assert_eq!(read.kind(), ErrorKind::NotConnected, "{read}");
             assert!(read.to_string().ends_with("was unplugged"));
-            let try_read = serial.try_read(&mut [0; 8]).unwrap_err();
-            assert_eq!(try_read.kind(), ErrorKind::NotConnected, "{try_read}");
+            assert!(serial.is_anything_waiting());
             let write = serial.write_now(b"x").unwrap_err();
             assert_eq!(write.kind(), ErrorKind::NotConnected, "{write}");
         }

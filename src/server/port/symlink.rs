@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use super::said;
 use super::tuning::is_pseudo_terminal;
-use crate::server::path_lock::PathLock;
+use crate::server::paths::PathLock;
 
 /// A symlink of ours; gone when this is dropped.
 #[derive(Debug)]

@@ -11,25 +11,28 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, ErrorKind};
 use std::net::SocketAddr;
 use std::os::fd::AsFd;
+use std::task::{Context, Poll, ready};
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::io::retry_on_intr;
+use rustix::event::{PollFd, PollFlags};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
+use tracing::{info, warn};
 
 use super::client::Client;
-use super::said;
+use super::{ClientId, INPUT, Port, PortEvent, is_any_ready, said};
+use crate::serial::Settings;
+use crate::server::clock::{Clock, WallTimer};
+use crate::time::Duration;
 
 /// Clients at once; real drives and gateways serve 1 to 32.
 pub const MAX_CLIENTS: usize = 64;
 
+/// How long the listener rests when the system gives it no more descriptors.
+const REST: Duration = Duration::from_secs(1);
+
 /// Events that may wait for the line's owner, of at most 1 KiB each. Readers beyond that wait their turn, in
 /// order, so that a client which floods us delays another by as many events and no more.
 const EVENTS: usize = 16;
-
-/// A client of one listener; never used twice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ClientId(pub u64);
 
 /// What happened at a listener.
 ///
@@ -55,6 +58,8 @@ pub enum TcpEvent {
 pub struct Listener {
     socket: TcpListener,
     accepting: bool,
+    /// Whose turn it is: a client that comes, or those that are there.
+    accepts_first: bool,
     clients: BTreeMap<ClientId, Client>,
     last_id: u64,
     /// Pieces of bytes that clients have sent: counted, since a port knows no time.
@@ -85,6 +90,7 @@ impl Listener {
         Ok(Self {
             socket,
             accepting: true,
+            accepts_first: false,
             clients: BTreeMap::new(),
             last_id: 0,
             pieces: 0,
@@ -102,51 +108,70 @@ impl Listener {
         self.socket.local_addr()
     }
 
-    /// Waits for the next event. Cancel-safe: no event is lost.
-    pub async fn next(&mut self) -> TcpEvent {
+    /// Waits for the next event.
+    pub fn poll_next(&mut self, cx: &mut Context<'_>) -> Poll<TcpEvent> {
         loop {
-            // Nothing is awaited between taking an event and returning it.
             if let Some(event) = self.untold.pop_front() {
-                return event;
+                return Poll::Ready(event);
             }
-            let event = tokio::select! {
-                accepted = self.socket.accept(), if self.accepting => match accepted {
-                    Ok((stream, peer)) => {
-                        self.admit(stream, peer);
-                        None
-                    }
-                    Err(e) => self.not_accepted(e),
-                },
-                Some(report) = self.reports.recv() => self.told(report),
-            };
-            if let Some(event) = event {
-                return event;
+            // Each has the first word by turns: a flood of bytes keeps no client out, and the other way round.
+            self.accepts_first = !self.accepts_first;
+            let accepted = if self.accepts_first { self.poll_accept(cx) } else { Poll::Pending };
+            if let Poll::Ready(event) = accepted {
+                match event {
+                    Some(event) => return Poll::Ready(event),
+                    None => continue,
+                }
+            }
+            if let Poll::Ready(Some(report)) = self.reports.poll_recv(cx) {
+                match self.told(report) {
+                    Some(event) => return Poll::Ready(event),
+                    None => continue,
+                }
+            }
+            if self.accepts_first {
+                return Poll::Pending;
+            }
+            match ready!(self.poll_accept(cx)) {
+                Some(event) => return Poll::Ready(event),
+                None => continue,
             }
         }
     }
 
-    /// Has something arrived of which [`Listener::next`] has not told yet?
+    /// Takes a client in, of which [`Listener::poll_next`] has not told yet; or fails.
+    fn poll_accept(&mut self, cx: &mut Context<'_>) -> Poll<Option<TcpEvent>> {
+        if !self.accepting {
+            return Poll::Pending;
+        }
+        Poll::Ready(match ready!(self.socket.poll_accept(cx)) {
+            Ok((stream, peer)) => {
+                self.admit(stream, peer);
+                None
+            }
+            Err(e) => self.not_accepted(e),
+        })
+    }
+
+    /// Has something arrived of which [`Listener::poll_next`] has not told yet?
     pub fn is_anything_waiting(&self) -> bool {
         let socket = self.accepting.then(|| self.socket.as_fd());
         let clients = self.clients.values().map(Client::as_fd);
         let watched = socket.into_iter().chain(clients);
         let mut watched: Vec<_> =
             watched.map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN)).collect();
-        let now = Timespec { tv_sec: 0, tv_nsec: 0 };
-        !self.untold.is_empty()
-            || !self.reports.is_empty()
-            || retry_on_intr(|| poll(&mut watched, Some(&now))).is_ok_and(|ready| ready > 0)
+        !self.untold.is_empty() || !self.reports.is_empty() || is_any_ready(&mut watched)
     }
 
     /// Sends an answer to a client: one write, if the connection takes it. Never waits. To a client that
-    /// is gone, nothing; one that is too slow, or broken, is closed and reported by [`Listener::next`].
+    /// is gone, nothing; one that is too slow, or broken, is closed and reported by [`Listener::poll_next`].
     pub fn send(&mut self, id: ClientId, bytes: &[u8]) {
         if let Some(Err(e)) = self.clients.get(&id).map(|client| client.send(bytes)) {
             self.part(id, Some(e));
         }
     }
 
-    /// Closes a client; [`Listener::next`] reports it.
+    /// Closes a client; [`Listener::poll_next`] reports it.
     pub fn close(&mut self, id: ClientId) {
         self.part(id, None);
     }
@@ -209,6 +234,107 @@ impl Listener {
         let known = self.clients.remove(&id).is_some();
         self.accepting |= known;
         known
+    }
+}
+
+/// A listener as a port of a line, with a word in the diagnostics about who comes and goes.
+#[derive(Debug)]
+pub struct TcpPort {
+    /// What it is called there.
+    name: String,
+    listener: Listener,
+    /// How many clients had to give way since the limit was reached; 0 below it.
+    displaced: u64,
+    /// Until then it takes no clients.
+    rest: Option<WallTimer>,
+}
+
+impl TcpPort {
+    /// The port of `listener`.
+    pub fn new(name: String, listener: Listener) -> Self {
+        Self { name, listener, displaced: 0, rest: None }
+    }
+
+    /// A client has left, as far as that concerns the line.
+    fn left(&mut self, error: Option<io::Error>) {
+        match error {
+            Some(error) => warn!("{}: client connection lost: {error}", self.name),
+            None => info!("{}: client disconnected", self.name),
+        }
+        // Told once a crowd, not once a client.
+        if let count @ 1.. = std::mem::take(&mut self.displaced) {
+            info!(
+                "{}: fewer than {MAX_CLIENTS} clients again; {count} were disconnected",
+                self.name
+            );
+        }
+    }
+
+    fn displace(&mut self) {
+        if self.displaced == 0 {
+            warn!(
+                "{}: {MAX_CLIENTS} clients are connected, which is the limit: each new one disconnects \
+                 the one that has been silent longest",
+                self.name
+            );
+        }
+        self.displaced += 1;
+    }
+}
+
+impl Port for TcpPort {
+    fn poll_event(&mut self, cx: &mut Context<'_>, input: &mut [u8; INPUT]) -> Poll<PortEvent> {
+        loop {
+            if self.rest.as_mut().is_some_and(|rest| rest.poll_over(cx).is_ready()) {
+                self.rest = None;
+                self.listener.accept_again();
+            }
+            return Poll::Ready(match ready!(self.listener.poll_next(cx)) {
+                TcpEvent::Opened(client, from) => {
+                    if self.displaced == 0 {
+                        info!("{}: {from} connected", self.name);
+                    }
+                    PortEvent::Opened(client)
+                }
+                TcpEvent::Bytes(from, bytes) => {
+                    let len = bytes.len();
+                    input[..len].copy_from_slice(&bytes);
+                    PortEvent::Bytes { from, len, replaced: false }
+                }
+                TcpEvent::Closed(client, error) => {
+                    self.left(error);
+                    PortEvent::Closed(client)
+                }
+                TcpEvent::Displaced(client) => {
+                    self.displace();
+                    PortEvent::Closed(client)
+                }
+                TcpEvent::NotAccepting(error) => {
+                    warn!("{}: cannot accept clients at the moment: {error}", self.name);
+                    self.rest = Some(Clock::wall_timer(REST));
+                    continue;
+                }
+            });
+        }
+    }
+
+    fn is_anything_waiting(&mut self) -> bool {
+        self.listener.is_anything_waiting()
+    }
+
+    fn send(&mut self, to: ClientId, frame: &[u8]) {
+        self.listener.send(to, frame);
+    }
+
+    fn close(&mut self, client: ClientId) {
+        self.listener.close(client);
+    }
+
+    /// A connection has neither speed nor format.
+    fn set_line(&mut self, _: Settings) {}
+
+    fn master(&self) -> Option<(u32, u8)> {
+        None
     }
 }
 

@@ -6,6 +6,7 @@
 
 use std::io;
 use std::path::Path;
+use std::task::{Context, Poll};
 
 pub(super) use notices::Presence;
 
@@ -22,7 +23,7 @@ pub(super) enum Since {
 
 #[cfg(target_os = "linux")]
 mod notices {
-    use super::{Path, Since, io};
+    use super::{Context, Path, Poll, Since, io};
     use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
     use rustix::io::Errno;
     use std::mem::MaybeUninit;
@@ -53,11 +54,10 @@ mod notices {
             self.open > 0
         }
 
-        /// Waits until a look may be worth while. Cancel-safe.
-        pub(in super::super) async fn changes(&self) -> io::Result<()> {
+        /// Waits until a look may be worth while.
+        pub(in super::super) fn poll_changes(&self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
             // What is noticed from here on makes it ready again.
-            self.notices.readable().await?.clear_ready();
-            Ok(())
+            self.notices.poll_read_ready(cx).map_ok(|mut ready| ready.clear_ready())
         }
 
         /// What has happened since the last look.
@@ -93,7 +93,7 @@ mod notices {
 
 #[cfg(not(target_os = "linux"))]
 mod notices {
-    use super::{Path, Since, io};
+    use super::{Context, Path, Poll, Since, io};
 
     /// Never there: this system has no such notices of terminals.
     #[derive(Debug)]
@@ -108,7 +108,7 @@ mod notices {
             match *self {}
         }
 
-        pub(in super::super) async fn changes(&self) -> io::Result<()> {
+        pub(in super::super) fn poll_changes(&self, _: &mut Context<'_>) -> Poll<io::Result<()>> {
             match *self {}
         }
 

@@ -3,6 +3,7 @@
 use super::*;
 use rustix::termios::ioctl_tiocexcl;
 use std::fs::File;
+use std::future::poll_fn;
 use std::io::{Read, Write};
 use std::process::Command;
 use std::time::Duration;
@@ -15,7 +16,7 @@ fn program(path: &Path) -> File {
 
 async fn input(pty: &mut Pty) -> (Vec<u8>, Left) {
     let mut buf = [0; 300];
-    let read = timeout(Duration::from_secs(2), pty.read(&mut buf)).await;
+    let read = timeout(Duration::from_secs(2), poll_fn(|cx| pty.poll_read(cx, &mut buf))).await;
     let Input { len, left } = read.unwrap().unwrap();
     (buf[..len].to_vec(), left)
 }
@@ -35,7 +36,7 @@ async fn is_deserted(pty: &mut Pty) {
 async fn is_silent(pty: &mut Pty) -> bool {
     let mut buf = [0; 300];
     // A hang-up or an echo would come at once; 20 ms of silence shows that neither did.
-    timeout(Duration::from_millis(20), pty.read(&mut buf)).await.is_err()
+    timeout(Duration::from_millis(20), poll_fn(|cx| pty.poll_read(cx, &mut buf))).await.is_err()
 }
 
 /// May a program without special rights open it? Root opens a locked terminal all the same, so it gives that up.
@@ -226,7 +227,7 @@ async fn tells_what_is_waiting_now() {
     pty.master.readable().await.unwrap().retain_ready();
     assert_eq!(pty.try_read(&mut buf).unwrap(), Input { len: 3, left: Left::Nobody });
     assert_eq!(pty.try_read(&mut buf).unwrap(), none);
-    assert_eq!(pty.read(&mut []).await.unwrap(), none);
+    assert_eq!(poll_fn(|cx| pty.poll_read(cx, &mut [])).await.unwrap(), none);
     assert!(is_silent(&mut pty).await);
 }
 

@@ -1,6 +1,7 @@
 //! Listener and clients over loopback sockets.
 
 use super::*;
+use std::future::poll_fn;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::timeout;
@@ -12,7 +13,7 @@ fn listener() -> (Listener, SocketAddr) {
 }
 
 async fn next(listener: &mut Listener) -> TcpEvent {
-    timeout(Duration::from_secs(5), listener.next()).await.expect("no event")
+    timeout(Duration::from_secs(5), poll_fn(|cx| listener.poll_next(cx))).await.expect("no event")
 }
 
 async fn connect(listener: &mut Listener, addr: SocketAddr) -> (TcpStream, ClientId) {
@@ -179,7 +180,9 @@ async fn a_broken_connection_and_a_close_of_ours_are_told_once() {
     let (gone, error) = closed(&mut listener).await;
     assert!(gone == id && error.is_none());
     assert_eq!(stream.read(&mut [0; 8]).await.unwrap(), 0);
-    assert!(timeout(Duration::from_millis(20), listener.next()).await.is_err());
+    assert!(
+        timeout(Duration::from_millis(20), poll_fn(|cx| listener.poll_next(cx))).await.is_err()
+    );
 }
 
 /// The one that has been silent longest gives way: first those that never said a word, oldest first.
@@ -246,7 +249,7 @@ async fn a_cancelled_wait_loses_nothing() {
     while got.len() < 200 {
         tokio::select! {
             biased;
-            event = listener.next() => match event {
+            event = poll_fn(|cx| listener.poll_next(cx)) => match event {
                 TcpEvent::Bytes(_, bytes) => got.extend(bytes),
                 other => panic!("{other:?}"),
             },
@@ -264,7 +267,9 @@ async fn out_of_connections_it_says_so_once_and_rests() {
     let full = io::Error::from(rustix::io::Errno::MFILE);
     assert!(matches!(listener.not_accepted(full), Some(TcpEvent::NotAccepting(_))));
     let _waiting = TcpStream::connect(addr).await.unwrap();
-    assert!(timeout(Duration::from_millis(20), listener.next()).await.is_err());
+    assert!(
+        timeout(Duration::from_millis(20), poll_fn(|cx| listener.poll_next(cx))).await.is_err()
+    );
     drop(stream);
     closed(&mut listener).await;
     assert!(matches!(next(&mut listener).await, TcpEvent::Opened(..)));
