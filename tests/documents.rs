@@ -26,41 +26,43 @@ fn the_catalogue_of_roles_is_up_to_date() {
     checked.unwrap_or_else(|what| panic!("{what}"));
 }
 
-/// docs/roles.md, from the tables in src/words.
+/// docs/roles.md, from the tables in src/vocabulary.
 fn roles() -> String {
     let mut out = String::from(
-        "<!-- Generated from src/words by `UPDATE_DOCS=1 cargo test`; edit there, not here. -->\n\n\
+        "<!-- Generated from src/vocabulary by `UPDATE_DOCS=1 cargo test`; edit there, not here. -->\n\n\
          # Roles\n\n\
-         The names that a model may use and what each means. How to use them: [models.md](models.md).\n",
+         The names that a model can use, and their meaning. How to use them: [models.md](models.md).\n",
     );
     let inputs = "Signals into the drive: `signals.inputs` wires them to terminals, words and bits. \
-                  A signal is active while any of its sources is.";
+                  A signal is active while at least one of its sources is.";
     section::<Input>(&mut out, "Input signals", inputs);
-    let outputs = "Signals out of the drive: `signals.outputs` wires them. `not` and a signal shows \
-                   its opposite.";
+    let outputs = "Signals out of the drive: `signals.outputs` wires them. `not` in front of a signal \
+                   inverts it.";
     section::<Output>(&mut out, "Output signals", outputs);
-    let actions = "What writing a value to a row of `signals.inputs.commands`, or a 1 to a bit of a row of \
-                   `signals.inputs.triggers`, sets off, at once and with every write. Of several bits at \
-                   once the action that stands first here acts alone.";
+    let actions = "Triggered by writing a value to a row of `signals.inputs.commands`, or a 1 to a bit of a row of \
+                   `signals.inputs.triggers`, immediately and with every write. If several bits are set \
+                   at once, only the action listed first here is executed.";
     section::<Action>(&mut out, "Actions", actions);
-    let modifiers = "What other bits of a row of `signals.inputs.triggers` say about the action.";
+    let modifiers = "Bits of a row of `signals.inputs.triggers` that modify the action.";
     section::<Modifier>(&mut out, "Modifiers", modifiers);
-    let quantities = "Numbers that the drive computes: `quantities` says which row shows each.";
+    let quantities = "Values that the drive computes: `quantities` names the row that shows each.";
     section::<Quantity>(&mut out, "Quantities", quantities);
-    out.push_str("\nThe row's unit must fit, with any factor before it (`0.1 rpm`, `100 ms`):\n\n");
+    out.push_str(
+        "\nThe row must have this unit, with an optional factor (`0.1 rpm`, `100 ms`):\n\n",
+    );
     for quantity in Quantity::ALL {
         units(&mut out, quantity.name(), &[quantity.dimension()]);
     }
-    let settings = "Numbers that motions go by: `quantities` says which row holds each.";
+    let settings = "Parameters of motions: `quantities` names the row that holds each.";
     section::<Setting>(&mut out, "Settings", settings);
-    out.push_str("\nThe row's unit must fit here too. A ramp in time is from standstill, of a move or run from its start speed, to the speed:\n\n");
+    out.push_str("\nThe row must have this unit. A ramp time is the time from standstill, or from the start speed of a move or run, to the speed:\n\n");
     for setting in Setting::ALL {
         units(&mut out, setting.name(), setting.dimensions());
     }
-    let taken = "When a value counts that is written to the row of a setting: `taken` in `quantities`, and \
-                 `settings_taken`, where the row's `applies` says nothing.";
+    let taken = "When a value written to the row of a setting takes effect: `taken` in `quantities`, or \
+                 `settings_taken`, where the row has no `applies`.";
     section::<Taken>(&mut out, "When settings take effect", taken);
-    let thresholds = "Numbers that outputs and an alarm go by, at any time: `quantities` says which row holds each, or \
+    let thresholds = "Limits that outputs and an alarm compare with, at any time: `quantities` names the row that holds each, or \
                       gives a number with its unit.";
     section::<Threshold>(&mut out, "Thresholds", thresholds);
     out.push('\n');
@@ -69,47 +71,50 @@ fn roles() -> String {
     }
     let units: Vec<_> = Unit::symbols().map(|it| format!("`{it}`")).collect();
     writeln!(out, "\nAll units: {}.", units.join(", ")).expect("a string");
-    let conditions = "What a segment waits for before the next one of its chain: `axis.segments.position.chain` \
-                      gives each its code.";
+    let conditions = "Conditions for the next segment of a chain: `axis.segments.position.chain` \
+                      gives each a code.";
     section::<Condition>(&mut out, "Conditions", conditions);
-    let targets = "What the target of a position segment is: `axis.segments.position.kind`.";
-    section::<Target>(&mut out, "Targets of segments", targets);
+    let targets = "Meaning of the target of a position segment: `axis.segments.position.kind`.";
+    section::<Target>(&mut out, "Segment targets", targets);
     let rules = "Whether interrupt positioning may start: `axis.interrupt.rule`.";
-    section::<InterruptRule>(&mut out, "Rules for interrupt positioning", rules);
+    section::<InterruptRule>(&mut out, "Locking of interrupt positioning", rules);
     let inhibits =
-        "What becomes of what the axis is behind when `command_inhibit` rises: `axis.inhibit`.";
-    section::<InhibitRule>(&mut out, "Rules for inhibited commands", inhibits);
-    let lasts = "How long a velocity segment lasts: `axis.segments.velocity.trigger`.";
-    section::<Lasts>(&mut out, "Triggers of segments", lasts);
+        "What happens to the following error when `command_inhibit` rises: `axis.inhibit`.";
+    section::<InhibitRule>(&mut out, "Inhibited commands", inhibits);
+    let lasts = "How long a velocity segment runs: `axis.segments.velocity.trigger`.";
+    section::<Lasts>(&mut out, "Segment triggers", lasts);
     homing(&mut out);
-    let alarms =
-        "Why a drive trips: `alarms` gives each its number. What has no number is never raised.";
+    let alarms = "Why a drive trips: `alarms` gives each a number. A cause without a number is never raised.";
     section::<AlarmCause>(&mut out, "Alarm causes", alarms);
-    let causes = "Why a drive refuses a request: `line.refuse` puts them in order, each with its \
-                  exception code. Of all that hold, the first in the list answers.";
-    section::<Cause>(&mut out, "Causes of refusal", causes);
+    let causes = "Why a drive refuses a request: `line.refuse` lists them in order, each with its \
+                  exception code. If several apply, the first in the list is reported.";
+    section::<Cause>(&mut out, "Refusal causes", causes);
     out
 }
 
-/// The words of `homing` and `limits`.
+/// The terms of `homing` and `limits`.
 fn homing(out: &mut String) {
-    section::<Pace>(out, "Homing speeds", "How fast a homing step goes: `at`.");
-    section::<Then>(out, "Ends of steps", "What happens at the end of a homing step: `then`.");
-    let starters = "What may start a homing: `homing.starter`.";
+    section::<Pace>(out, "Homing speeds", "Speed of a homing step: `at`.");
+    section::<Then>(
+        out,
+        "End of a homing step",
+        "What happens at the end of a homing step: `then`.",
+    );
+    let starters = "What can start a homing: `homing.starter`.";
     section::<HomeStarter>(out, "Homing triggers", starters);
-    let limit = "What happens when a limit ends the way of a homing step: `homing.limit`.";
-    section::<LimitRule>(out, "Limits during a homing", limit);
-    let source = "What tells a homing that the axis has come to a limit: `homing.limit_source`.";
+    let limit = "What happens when a homing step ends at a limit: `homing.limit`.";
+    section::<LimitRule>(out, "Limits during homing", limit);
+    let source = "How a homing detects a limit: `homing.limit_source`.";
     section::<LimitSource>(out, "Limit detection", source);
     let index = "How an index pulse refines the origin: `homing.index`.";
-    section::<IndexRule>(out, "Uses of the index pulse", index);
-    let stop = "How the axis stops there: `homing.stop`.";
+    section::<IndexRule>(out, "Use of the index pulse", index);
+    let stop = "How the axis stops at the origin: `homing.stop`.";
     section::<OriginStop>(out, "Stopping at the origin", stop);
-    let position = "What the position register says in the end: `position` under `homing.finish`.";
-    section::<OriginPosition>(out, "Positions after a homing", position);
+    let position = "Value of the position register after homing: `position` under `homing.finish`.";
+    section::<OriginPosition>(out, "Position after homing", position);
     section::<LimitStop>(out, "Stopping at a limit", "How a limit stops the axis: `limits.stop`.");
     let soft = "When soft limits are in force: `limits.soft`.";
-    section::<SoftLimitRule>(out, "Rules for soft limits", soft);
+    section::<SoftLimitRule>(out, "Soft limits", soft);
 }
 
 /// The units that fit the role `name`.

@@ -20,7 +20,7 @@ pub enum Wait {
     /// So much time in position.
     Delay(Duration),
     /// A rising edge.
-    HomingStep,
+    Step,
     /// The axis at a place.
     Position {
         /// A count of the machine.
@@ -34,7 +34,7 @@ impl Wait {
     fn condition(self) -> Condition {
         match self {
             Self::Delay(_) => Condition::Delay,
-            Self::HomingStep => Condition::HomingStep,
+            Self::Step => Condition::Step,
             Self::Position { .. } => Condition::Position,
         }
     }
@@ -122,7 +122,7 @@ impl Chain {
     /// The edge came. Does the segment under way wait for it?
     pub fn step(&mut self, now: Instant) -> bool {
         let Some(link) = &mut self.under_way else { return false };
-        let waits = link.rule.waits.contains(&Some(Wait::HomingStep)) && link.stepped.is_none();
+        let waits = link.rule.waits.contains(&Some(Wait::Step)) && link.stepped.is_none();
         link.stepped.get_or_insert(now);
         waits
     }
@@ -160,7 +160,7 @@ impl ChainState {
     fn met(&self, wait: Wait) -> Option<Instant> {
         match wait {
             Wait::Delay(time) => self.arrived.map(|at| at + time),
-            Wait::HomingStep => self.stepped,
+            Wait::Step => self.stepped,
             Wait::Position { at, .. } => at,
         }
     }
@@ -195,32 +195,23 @@ mod tests {
     fn conditions_alone() {
         let place = |at| Wait::Position { place: 7, at: Some(ms(at)) };
         assert_eq!(done(&[DELAY], false, true), Some((ms(150), Some(Condition::Delay))));
-        assert_eq!(
-            done(&[Wait::HomingStep], false, true),
-            Some((ms(30), Some(Condition::HomingStep)))
-        );
+        assert_eq!(done(&[Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
         assert_eq!(done(&[place(60)], false, true), Some((ms(60), Some(Condition::Position))));
         assert_eq!(done(&[Wait::Position { place: 7, at: None }], false, true), None);
         // Without `through` the segment is done first.
-        assert_eq!(
-            done(&[Wait::HomingStep], false, false),
-            Some((ms(100), Some(Condition::HomingStep)))
-        );
+        assert_eq!(done(&[Wait::Step], false, false), Some((ms(100), Some(Condition::Step))));
         assert_eq!(done(&[DELAY], false, false), Some((ms(150), Some(Condition::Delay))));
     }
 
     #[test]
     fn conditions_together() {
-        let either = done(&[DELAY, Wait::HomingStep], false, true);
-        assert_eq!(either, Some((ms(30), Some(Condition::HomingStep))));
-        let both = done(&[DELAY, Wait::HomingStep], true, true);
+        let either = done(&[DELAY, Wait::Step], false, true);
+        assert_eq!(either, Some((ms(30), Some(Condition::Step))));
+        let both = done(&[DELAY, Wait::Step], true, true);
         assert_eq!(both, Some((ms(150), Some(Condition::Delay))));
         let never = Wait::Position { place: 7, at: None };
-        assert_eq!(
-            done(&[never, Wait::HomingStep], false, true),
-            Some((ms(30), Some(Condition::HomingStep)))
-        );
-        assert_eq!(done(&[never, Wait::HomingStep], true, true), None);
+        assert_eq!(done(&[never, Wait::Step], false, true), Some((ms(30), Some(Condition::Step))));
+        assert_eq!(done(&[never, Wait::Step], true, true), None);
     }
 
     #[test]

@@ -218,7 +218,7 @@ impl Drive {
                     let time = Duration::try_from_secs_f64(value.max(0.0));
                     Wait::Delay(time.unwrap_or(Duration::MAX))
                 }
-                Condition::HomingStep => Wait::HomingStep,
+                Condition::Step => Wait::Step,
                 Condition::Position => {
                     let place = self.place(value.round() as i64);
                     Wait::Position { place, at: self.motor.reaches(self.now, place) }

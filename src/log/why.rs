@@ -44,7 +44,7 @@ pub fn chain_step(why: Option<Condition>) -> &'static str {
     match why {
         None => "in position",
         Some(Condition::Delay) => "delay elapsed",
-        Some(Condition::HomingStep) => "rising edge of segment_step",
+        Some(Condition::Step) => "rising edge of segment_step",
         Some(Condition::Position) => "position reached",
     }
 }

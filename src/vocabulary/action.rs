@@ -5,29 +5,29 @@ use super::named_terms;
 named_terms! {
     /// Something a drive does at once when told to. Of several at once the one that stands first acts.
     Action {
-        QuickStop "quick_stop" "stop at once, without a ramp",
-        Stop "stop" "slow down to a standstill, with the deceleration of the motion",
-        HomeStart "home_start" "start a homing; ignored while the axis moves",
-        MoveStart "move_start" "go `move.target` counts on, or with `absolute` to that position; ignored while the axis moves, unless `interrupt` is set; that breaks off a homing too",
-        RunStart "run_start" "go at `run.speed` until stopped; its sign is the direction; a run under way takes the new speed, a move only with `interrupt`; ignored in any other motion",
-        Enable "enable" "switch the power stage on",
-        Release "release" "switch the power stage off; it stays off until told otherwise",
-        AlarmReset "alarm_reset" "clear an alarm whose cause is gone, if a reset can clear it",
-        EncoderReset "encoder_reset" "clear alarm `encoder`, also where no other reset can; any other alarm stays",
-        ClearAlarmHistory "clear_alarm_history" "forget the alarms that `alarm_history` shows",
-        ClearPosition "clear_position" "call the present position 0",
-        ClearTurns "clear_turns" "count the revolutions of the encoder from 0, beginning with the present one",
-        StoreAll "store_all" "keep all values in force over power-off; ignored while the axis moves",
-        RestoreFactory "restore_factory" "put every value back as it left the factory; ignored while the axis moves",
-        PowerCycle "power_cycle" "start anew, as if power had been off and on",
+        QuickStop "quick_stop" "stop immediately, without a ramp",
+        Stop "stop" "decelerate to standstill with the deceleration of the current motion",
+        HomeStart "home_start" "start homing; ignored while the axis moves",
+        MoveStart "move_start" "move by `move.target` counts, or with `absolute` to that position; ignored while the axis moves unless `interrupt` is set, which also aborts a homing",
+        RunStart "run_start" "run at `run.speed` until stopped; the sign gives the direction; a run in progress takes the new speed, a move only with `interrupt`; ignored during any other motion",
+        Enable "enable" "switch on the power stage",
+        Release "release" "switch off the power stage; it stays off until it is enabled again",
+        AlarmReset "alarm_reset" "clear an alarm that is resettable and whose cause is no longer present",
+        EncoderReset "encoder_reset" "clear alarm `encoder`, even where it is not resettable; other alarms are not affected",
+        ClearAlarmHistory "clear_alarm_history" "clear the alarms in `alarm_history`",
+        ClearPosition "clear_position" "set the current position to 0",
+        ClearTurns "clear_turns" "set the multi-turn count of the encoder to 0",
+        StoreAll "store_all" "store all current values in non-volatile memory; ignored while the axis moves",
+        RestoreFactory "restore_factory" "restore the factory values of all parameters; ignored while the axis moves",
+        PowerCycle "power_cycle" "restart the drive, as after a power cycle",
     }
 }
 
 named_terms! {
     /// What a bit beside those that trigger says about the action.
     Modifier {
-        Absolute "absolute" "`move.target` is a position, not a way",
-        Interrupt "interrupt" "a move takes the place of a motion under way, or a run that of a move",
+        Absolute "absolute" "`move.target` is an absolute position, not a distance",
+        Interrupt "interrupt" "a move replaces the motion in progress, or a run replaces a move",
     }
 }
 

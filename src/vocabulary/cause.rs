@@ -5,15 +5,15 @@ use super::named_terms;
 named_terms! {
     /// A cause of refusal.
     Cause {
-        Function "function" "the function code is not one of the drive's",
-        Length "length" "byte count, register count and data of the request do not agree",
-        Quantity "quantity" "no register, or more than one request may name",
-        AddressBeyond "address_beyond" "an address above the highest that is mapped; `address` where the model does not tell them apart",
-        Address "address" "an address that is not mapped",
-        SplitLong "split_long" "one word of a 32-bit pair without the other",
-        ReadOnly "read_only" "a write to a row that can only be read",
-        WriteOnly "write_only" "a read of a row that can only be written",
+        Function "function" "the drive does not support the function code",
+        Length "length" "byte count, register count and data length of the request do not match",
+        Quantity "quantity" "the register count is 0 or above the maximum for one request",
+        AddressBeyond "address_beyond" "an address above the highest mapped one; reported as `address` where the model does not list it",
+        Address "address" "an unmapped address",
+        SplitLong "split_long" "an access to one word of a 32-bit pair without the other",
+        ReadOnly "read_only" "a write to a read-only row",
+        WriteOnly "write_only" "a read of a write-only row",
         Range "range" "a value outside the row's range",
-        State "state" "a write that the drive's present state forbids",
+        State "state" "a write that the present state of the drive does not permit",
     }
 }

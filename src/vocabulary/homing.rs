@@ -62,9 +62,9 @@ pub struct SignalEdge {
 named_terms! {
     /// What happens at the end of a homing step.
     Then {
-        Ramp "ramp" "slow down to a standstill, then take the next step",
-        Keep "keep" "take the next step without stopping",
-        Origin "origin" "this point is the origin",
+        Ramp "ramp" "decelerate to standstill, then continue with the next step",
+        Keep "keep" "continue with the next step without stopping",
+        Origin "origin" "this position is the origin",
     }
 }
 
@@ -123,8 +123,8 @@ impl Method {
 named_terms! {
     /// What happens when a limit ends the way of a homing step.
     LimitRule {
-        Turn "turn" "the method's steps for it follow; where it has none, the axis waits there for `home.time_limit`, or without one the homing is given up",
-        Alarm "alarm" "the homing is given up with alarm `homing_limit_pos` or `homing_limit_neg`",
+        Turn "turn" "the method continues with its steps `at_limit`; without any, the axis waits there until `home.time_limit`, or without one the homing is aborted",
+        Alarm "alarm" "the homing is aborted with alarm `homing_limit_pos` or `homing_limit_neg`",
     }
 }
 
@@ -140,17 +140,17 @@ named_terms! {
 named_terms! {
     /// How an index pulse refines the origin of methods that say `index: true`.
     IndexRule {
-        None "none" "not at all",
-        Back "back" "the next index pulse against the direction of the method's first step is the origin",
-        Onward "onward" "the next index pulse in the direction of the method's first step is the origin; a limit that the method starts `by` does not end this way",
+        None "none" "not used",
+        Back "back" "the origin is the next index pulse against the direction of the method's first step",
+        Onward "onward" "the origin is the next index pulse in the direction of the method's first step; a limit switch named in `by` does not stop this search",
     }
 }
 
 named_terms! {
     /// How an axis stands at its origin.
     OriginStop {
-        AtOnce "at_once" "at once, exactly on it",
-        Ramp "ramp" "after a ramp, somewhat beyond it",
+        AtOnce "at_once" "immediately, exactly on it",
+        Ramp "ramp" "with a ramp, slightly beyond it",
     }
 }
 
@@ -159,10 +159,10 @@ named_terms! {
     OriginPosition {
         Coordinate "coordinate" "`home.coordinate`",
         Zero "zero" "0",
-        MinusCoordinate "minus_coordinate" "`home.coordinate` with the other sign",
-        Kept "kept" "what it says anyway",
-        KeptPlus "kept_plus_coordinate" "what it says anyway and `home.coordinate`",
-        KeptMinus "kept_minus_coordinate" "what it says anyway less `home.coordinate`",
+        MinusCoordinate "minus_coordinate" "`home.coordinate` with the sign inverted",
+        Kept "kept" "unchanged",
+        KeptPlus "kept_plus_coordinate" "unchanged, plus `home.coordinate`",
+        KeptMinus "kept_minus_coordinate" "unchanged, minus `home.coordinate`",
     }
 }
 
@@ -172,16 +172,16 @@ named_terms! {
         Never "never" "nothing",
         Input "input" "signal `home_start`",
         Command "command" "action `home_start`",
-        FirstEnable "first_enable" "the first time that the power stage goes on after power-on",
+        FirstEnable "first_enable" "the first enable after power-on",
     }
 }
 
 named_terms! {
     /// How an axis stops at a limit.
     LimitStop {
-        Coast "coast" "it coasts, as without power",
+        Coast "coast" "it coasts, with the power stage off",
         Quick "quick" "at once",
-        Ramp "ramp" "with the deceleration of the motion",
+        Ramp "ramp" "with the deceleration of the current motion",
     }
 }
 
@@ -196,7 +196,7 @@ named_terms! {
     /// When soft limits are in force.
     SoftLimitRule {
         Off "off" "never",
-        AfterHoming "after_homing" "once a homing is done",
+        AfterHoming "after_homing" "once homing is complete",
         Always "always" "always",
     }
 }

@@ -6,18 +6,18 @@ use crate::units::Dimension;
 named_terms! {
     /// A number that something of the axis is held against at any time.
     Threshold {
-        ZeroSpeed "zero.speed" "`zero_speed` shows up to this speed; 0 if left out",
-        TurningSpeed "turning.speed" "`turning` shows above this speed",
-        ReachedSpeed "reached.speed" "the speed that `speed_reached` is about",
-        ReachedWindow "reached.window" "how far from `reached.speed` it still shows",
-        PositionWindow "position.window" "how far from its end a move may be for `in_position`; 0 if left out",
-        PositionSettle "position.settle" "how long it must have been so near; 0 if left out",
-        InterruptDoneTime "interrupt.done_time" "how long `interrupt_done` shows",
-        CoincidesWindow "coincides.window" "how far the axis may be behind its command for `coincides`",
-        NearWindow "near.window" "how far the axis may be behind its command for `near`",
-        AgreesWindow "agrees.window" "how near `speed_agrees` takes a speed for the one that was ordered",
-        CommandSpeed "command.speed" "`command_present` shows above this speed; 0 if left out",
-        Deviation "limit.deviation" "how far the axis may be from its command before alarm `position_deviation`",
+        ZeroSpeed "zero.speed" "`zero_speed` is on up to this speed; default 0",
+        TurningSpeed "turning.speed" "`turning` is on above this speed",
+        ReachedSpeed "reached.speed" "the target speed of `speed_reached`",
+        ReachedWindow "reached.window" "tolerance of `speed_reached` around `reached.speed`",
+        PositionWindow "position.window" "in-position window: maximum distance from the target for `in_position` and `settled`; default 0",
+        PositionSettle "position.settle" "minimum time within `position.window`; default 0",
+        InterruptDoneTime "interrupt.done_time" "how long `interrupt_done` stays on",
+        CoincidesWindow "coincides.window" "maximum following error for `coincides`",
+        NearWindow "near.window" "maximum following error for `near`",
+        AgreesWindow "agrees.window" "tolerance of `speed_agrees` around the commanded speed",
+        CommandSpeed "command.speed" "`command_present` is on above this speed; default 0",
+        Deviation "limit.deviation" "maximum following error before alarm `position_deviation`",
     }
 }
 

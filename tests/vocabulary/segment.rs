@@ -30,14 +30,14 @@ fn each_condition_counts() {
         let mut rig = acme(&DeviceSpec::default());
         let (code, value) = match condition {
             Condition::Delay => (1, 10),
-            Condition::HomingStep => (2, 0),
+            Condition::Step => (2, 0),
             Condition::Position => (3, 4),
         };
         chain(&mut rig, code, value);
         let running = |rig: &Rig| rig.drive().quantity(Quantity::SegmentRunning);
         match condition {
             Condition::Delay => rig.advance(Duration::from_secs(1)),
-            Condition::HomingStep => {
+            Condition::Step => {
                 assert_eq!(running(&rig), 16, "{}", rig.log());
                 by_bit(&mut rig, Input::SegmentStep, true);
                 Vec::new()

@@ -138,7 +138,7 @@ impl ChainRules {
     }
 
     pub(in crate::model) fn waits_for_a_step(&self) -> bool {
-        self.codes.iter().any(|(_, it)| *it == Condition::HomingStep)
+        self.codes.iter().any(|(_, it)| *it == Condition::Step)
     }
 }
 
