@@ -4,6 +4,7 @@
 
 mod architecture;
 mod drives;
+mod links;
 mod readme;
 
 use crate::expect::{read, root, same};

@@ -171,7 +171,7 @@ fn settings(model: &Model) -> String {
         rows.push(format!("| {} | {} | {printed} | {} |", code(row), row.name, counts.join(", ")));
     }
     out.push_str(&rows.join("\n"));
-    out.push_str("\n\n[What these times mean](../models.md#when-settings-count).\n");
+    out.push_str("\n\n[What these times mean](../models.md#when-settings-take-effect).\n");
     out
 }
 
