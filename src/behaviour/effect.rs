@@ -3,28 +3,6 @@
 use crate::time::Duration;
 use crate::vocabulary::{AlarmCause, HomeEnd, HomingStep};
 
-/// What an axis is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    /// Nothing.
-    Standing,
-    /// Going to a position.
-    Moving,
-    /// Going at a speed by order.
-    Running,
-    /// Going at a speed while a level asks for it.
-    Jogging {
-        /// In the positive direction?
-        forward: bool,
-    },
-    /// Looking for its origin.
-    Homing,
-    /// Slowing down.
-    Stopping,
-    /// Running out.
-    Coasting,
-}
-
 /// What has become different about a motion under way: machine counts, counts per second (squared).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Replan {

@@ -7,8 +7,10 @@ mod power;
 mod watchdog;
 
 pub use chain::{Chain, ChainRule, MOST_WAITS, Wait};
-pub use effect::{Effect, Phase, Replan};
-pub use motor::{Commands, Control, HomeOrder, Jog, Motor, MotorTimer, Ramp, Slope, Wants};
+pub use effect::{Effect, Replan};
+pub use motor::{
+    Commands, Control, HomeOrder, Jog, Motor, MotorLevels, MotorTimer, Phase, Ramp, Slope,
+};
 pub use power::{
     CommandControl, LevelControl, PowerControl, PowerDemand, PowerLevels, PowerStage, PowerState,
     Trip,

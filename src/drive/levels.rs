@@ -103,13 +103,13 @@ impl Drive {
 
     /// Does the axis run because of this level?
     fn is_under_way(&self, level: Level) -> bool {
-        self.motor.is_jogging() && self.course == Some(Course::Level(level))
+        self.motor.phase().is_jogging() && self.course == Some(Course::Level(level))
     }
 
     /// Does the axis run because `input` asks for it?
     pub(super) fn runs_by(&self, input: Input) -> bool {
         let by = matches!(self.course, Some(Course::Level(level)) if level.input() == input);
-        by && self.motor.is_jogging()
+        by && self.motor.phase().is_jogging()
     }
 
     /// Follows the level of `segment_run`, and the selection while it stands.

@@ -35,7 +35,9 @@ pub use timer::Timer;
 pub use view::View;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Wants, Watchdog};
+use crate::behaviour::{
+    Chain, LevelControl, Motor, MotorLevels, PowerControl, PowerStage, Watchdog,
+};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::Model;
 use crate::serial::Mode;
@@ -273,7 +275,7 @@ impl Drive {
         self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
         self.comms.power_off();
         self.chain.end();
-        self.motor.follow(now, Wants::default());
+        self.motor.follow(now, MotorLevels::default());
         self.tell_stages(None);
     }
 

@@ -4,7 +4,7 @@
 use super::Drive;
 use super::course::{Course, MoveRows};
 use super::settings::Moment;
-use crate::behaviour::{Commands, Control, Effect, Phase, Replan, Wants};
+use crate::behaviour::{Commands, Control, Effect, MotorLevels, Phase, Replan};
 use crate::event::{Change, Ignored, Replanned};
 use crate::model::AlarmStop;
 use crate::motion::{Machine, State};
@@ -80,9 +80,9 @@ impl Drive {
             self.follow_settings();
             let (run, moment) = (self.wanted_run(), self.order_moment());
             let jog = self.jog(run);
-            let wants = Wants { jog, decel: self.decel(), ..self.wants() };
+            let wants = MotorLevels { jog, decel: self.decel(), ..self.wants() };
             self.motor.follow(self.now, wants);
-            let begins = jog.is_some_and(|jog| jog.takes_over) && self.motor.is_jogging();
+            let begins = jog.is_some_and(|jog| jog.takes_over) && self.motor.phase().is_jogging();
             if let Some((level, _)) = run.filter(|_| begins) {
                 self.take_settings(moment);
                 self.course = Some(Course::Level(level));
@@ -210,9 +210,9 @@ impl Drive {
     }
 
     /// What is wanted of the axis, apart from runs.
-    fn wants(&self) -> Wants {
+    fn wants(&self) -> MotorLevels {
         let (has, commands) = (|input| self.inputs.has(input), self.commands());
-        Wants {
+        MotorLevels {
             power: self.power_stage.is_enabled(),
             // What brakes for an alarm starts nothing.
             stop: has(Input::Stop) || self.power_stage.is_braking(),

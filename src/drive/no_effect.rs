@@ -211,8 +211,8 @@ impl Drive {
             return None;
         }
         match self.motor.may_start(false) {
-            Err(Ignored::Moving) if self.motor.is_slowing() => {}
-            Err(Ignored::Moving) if self.motor.is_jogging() => {}
+            Err(Ignored::Moving) if self.motor.phase().is_slowing() => {}
+            Err(Ignored::Moving) if self.motor.phase().is_jogging() => {}
             Err(why) => return Some(self.root_of(why)),
             Ok(()) => {}
         }
@@ -244,7 +244,7 @@ impl Drive {
 
     /// Why an order to stop has no effect, if it has none; one that stops `at_once` also ends a ramp.
     pub(super) fn why_no_stop(&self, at_once: bool) -> Option<Ignored> {
-        let slowing = self.motor.is_slowing();
+        let slowing = self.motor.phase().is_slowing();
         match () {
             () if self.chain.is_under_way() => None,
             () if !self.motor.is_moving() => Some(Ignored::AlreadyStopped),

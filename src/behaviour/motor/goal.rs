@@ -1,5 +1,6 @@
 //! What a motion is to come to: a speed, a position or a standstill, and how.
 
+use crate::behaviour::effect::Replan;
 use crate::motion::{Move, State, Trajectory};
 use crate::time::Instant;
 
@@ -94,5 +95,58 @@ impl Goal {
             }
             Self::Stop(slope, change) => (decel.unwrap_or(*slope), *change),
         }
+    }
+
+    /// What is different in `other`, a goal of the same kind.
+    pub(super) fn replans(&self, other: &Self) -> impl Iterator<Item = Replan> + use<> {
+        let ramps = |was: &Ramp, is: &Ramp| {
+            [
+                (was.speed != is.speed).then_some(Replan::Speed(is.speed)),
+                (was.start_speed != is.start_speed).then_some(Replan::StartSpeed(is.start_speed)),
+                (was.accel != is.accel).then(|| Replan::Accel(is.accel.of(is.change()))),
+                (was.decel != is.decel).then(|| Replan::Decel(is.decel.of(is.change()))),
+            ]
+        };
+        let (target, others) = match (self, other) {
+            (Self::Speed(was), Self::Speed(is)) => (None, ramps(was, is)),
+            (Self::Position(from, was), Self::Position(to, is)) => {
+                ((from != to).then_some(Replan::Target(*to)), ramps(was, is))
+            }
+            (_, Self::Stop(decel, change)) => (Some(Replan::Decel(decel.of(*change))), [None; 4]),
+            _ => (None, [None; 4]),
+        };
+        target.into_iter().chain(others.into_iter().flatten())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RAMP: Ramp =
+        Ramp { speed: 100.0, accel: Slope::Rate(1e3), decel: Slope::Time(0.5), start_speed: 20.0 };
+
+    fn replans(was: Goal, is: Goal) -> Vec<Replan> {
+        was.replans(&is).collect()
+    }
+
+    #[test]
+    fn tells_what_is_different_and_nothing_else() {
+        let faster = Ramp { speed: 120.0, ..RAMP };
+        assert_eq!(replans(Goal::Speed(RAMP), Goal::Speed(RAMP)), []);
+        assert_eq!(replans(Goal::Speed(RAMP), Goal::Speed(faster)), [Replan::Speed(120.0)]);
+        let moved = replans(Goal::Position(5, RAMP), Goal::Position(7, faster));
+        assert_eq!(moved, [Replan::Target(7), Replan::Speed(120.0)]);
+        // A time is that of the whole change, from the start speed to the speed.
+        let longer = Ramp { decel: Slope::Time(2.0), ..RAMP };
+        assert_eq!(replans(Goal::Speed(RAMP), Goal::Speed(longer)), [Replan::Decel(40.0)]);
+    }
+
+    #[test]
+    fn a_stop_slows_down_as_the_motion_does_or_as_it_is_told() {
+        assert_eq!(Goal::Speed(RAMP).stop(None), (Slope::Time(0.5), 80.0));
+        assert_eq!(Goal::Speed(RAMP).stop(Some(Slope::Rate(9.0))), (Slope::Rate(9.0), 80.0));
+        assert_eq!(Goal::Stop(Slope::Rate(3.0), 7.0).stop(None), (Slope::Rate(3.0), 7.0));
+        assert_eq!(Goal::None.stop(None).0.of(80.0), 0.0);
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::behaviour::effect::Replan;
 use crate::motion::Switch;
-use crate::vocabulary::Input;
+use crate::vocabulary::{Input, Inputs};
 use proptest::prelude::*;
 
 const HOW: Ramp = Ramp {
@@ -70,7 +70,7 @@ fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, MotorOrder)>> {
 /// An axis with a clock, as a drive keeps it.
 struct MotorBench {
     motor: Motor,
-    wants: Wants,
+    wants: MotorLevels,
     now: Instant,
     told: Vec<(Instant, Effect)>,
     /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
@@ -95,7 +95,7 @@ fn machines() -> impl Strategy<Value = Machine> {
 impl MotorBench {
     fn new(machine: Machine) -> Self {
         let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
-        let wants = Wants { power: true, ..Wants::default() };
+        let wants = MotorLevels { power: true, ..MotorLevels::default() };
         let mut bench =
             Self { motor, wants, now: Instant::ZERO, told: Vec::new(), jump: 0.0, tuned: 0 };
         bench.follow();
@@ -112,7 +112,7 @@ impl MotorBench {
                 switches.insert(signal);
             }
         }
-        self.motor.follow(self.now, Wants { switches, ..self.wants });
+        self.motor.follow(self.now, MotorLevels { switches, ..self.wants });
         self.wants.jog.iter_mut().for_each(|jog| jog.takes_over = false);
         self.hear();
         if self.motor.take_switch_edge(self.now) {
@@ -148,7 +148,7 @@ impl MotorBench {
                     let same = self.wants.jog.is_some_and(|before| before.ramp == ramp);
                     Jog { ramp, takes_over: !same, by_position: false }
                 });
-                self.wants = Wants { power, stop, quick_stop, jog, ..self.wants };
+                self.wants = MotorLevels { power, stop, quick_stop, jog, ..self.wants };
                 Ok(())
             }
             MotorOrder::Move { target, interrupt } => {
@@ -178,13 +178,12 @@ impl MotorBench {
     /// The motion under way goes by `ramp`, and ends `by` counts from here if it ends anywhere.
     fn tune(&mut self, ramp: Ramp, by: i64) {
         let now = self.now;
-        let states = |motor: &Motor| {
-            [motor.trajectory.state(now), motor.lag.feedback(&motor.trajectory, now)]
-        };
+        let states =
+            |motor: &Motor| [motor.position_loop.setpoint(now), motor.position_loop.feedback(now)];
         let (before, phase) = (states(&self.motor), self.motor.phase());
         match phase {
             Phase::Moving => {
-                let target = self.motor.commanded(now) + by;
+                let target = self.motor.position_loop.command_count(now) + by;
                 self.motor.retune_move(now, target, ramp);
             }
             Phase::Running => self.motor.retune_run(now, ramp),
@@ -323,7 +322,7 @@ fn settings_that_change_are_followed() {
 
 #[test]
 fn says_why_it_does_not_start() {
-    let start = |wants: Wants, running: bool| {
+    let start = |wants: MotorLevels, running: bool| {
         let mut bench = MotorBench::new(Machine::default());
         if running {
             bench.obey(MotorOrder::Run { speed: 1000.0 });
@@ -332,12 +331,15 @@ fn says_why_it_does_not_start() {
         bench.follow();
         bench.motor.start_run(bench.now, ramp(5.0), false)
     };
-    let ready = Wants { power: true, ..Wants::default() };
+    let ready = MotorLevels { power: true, ..MotorLevels::default() };
     assert_eq!(start(ready, false), Ok(()));
     assert_eq!(start(ready, true), Err(Ignored::Moving));
-    assert_eq!(start(Wants { stop: true, ..ready }, false), Err(Ignored::Held));
-    assert_eq!(start(Wants { quick_stop: true, ..ready }, true), Err(Ignored::Held));
-    assert_eq!(start(Wants { power: false, stop: true, ..ready }, true), Err(Ignored::PowerOff));
+    assert_eq!(start(MotorLevels { stop: true, ..ready }, false), Err(Ignored::Held));
+    assert_eq!(start(MotorLevels { quick_stop: true, ..ready }, true), Err(Ignored::Held));
+    assert_eq!(
+        start(MotorLevels { power: false, stop: true, ..ready }, true),
+        Err(Ignored::PowerOff)
+    );
 }
 
 #[test]
