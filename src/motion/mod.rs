@@ -15,10 +15,8 @@
 //! Deliberately absent: torque, inertia, jerk; what starts or ends a motion; any rounding of ramps to a
 //! control cycle.
 
-mod crossing;
 mod lag;
 mod machine;
-mod orders;
 mod plan;
 mod search;
 #[cfg(test)]
@@ -27,7 +25,7 @@ mod trajectory;
 
 pub use lag::Lag;
 pub use machine::{Hit, Index, IndexPulse, Machine, Switch, SwitchEdge, Zone};
-pub use orders::Move;
+pub use plan::Move;
 pub use search::first_equal;
 pub use trajectory::Trajectory;
 
