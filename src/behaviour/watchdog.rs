@@ -41,3 +41,38 @@ impl Watchdog {
         self.since.take().map(|since| now.since(since))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: Option<Duration> = Some(Duration::from_secs(1));
+
+    fn ms(ms: u64) -> Instant {
+        Instant::from_millis(ms)
+    }
+
+    #[test]
+    fn expires_once_and_says_how_long_it_held() {
+        let mut watchdog = Watchdog::default();
+        assert_eq!((watchdog.deadline(), watchdog.expired(ms(5000))), (None, None));
+        watchdog.refresh(ms(0), SECOND);
+        watchdog.refresh(ms(500), SECOND);
+        assert_eq!(watchdog.deadline(), Some(ms(1500)));
+        assert_eq!(watchdog.expired(ms(1499)), None);
+        assert_eq!(watchdog.expired(ms(1600)), Some(Duration::from_millis(1100)));
+        assert_eq!(watchdog.expired(ms(1600)), None);
+    }
+
+    #[test]
+    fn another_time_counts_from_the_last_refresh() {
+        let mut watchdog = Watchdog::default();
+        watchdog.refresh(ms(100), SECOND);
+        watchdog.retime(None);
+        assert_eq!(watchdog.deadline(), None, "it holds for ever");
+        watchdog.retime(Some(Duration::from_millis(50)));
+        assert_eq!(watchdog.deadline(), Some(ms(150)));
+        watchdog.stop();
+        assert_eq!(watchdog.expired(ms(9999)), None);
+    }
+}

@@ -395,3 +395,92 @@ impl Homing {
         switches
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::behaviour::motor::Slope;
+    use crate::vocabulary::Method;
+
+    /// Forward and fast onto the home switch, back and slow off it: there is the origin. At a limit: the other way.
+    fn order() -> HomeOrder {
+        let edge = |on| Until::Edge(SignalEdge { signal: Input::HomeSwitch, on });
+        let step = |forward, pace, on, then| HomingStep { forward, pace, until: edge(on), then };
+        let off = step(false, Pace::Slow, false, Then::Origin);
+        HomeOrder {
+            method: Method {
+                steps: Steps::new(&[step(true, Pace::Fast, true, Then::Ramp), off]),
+                at_limit: Steps::new(&[step(false, Pace::Fast, true, Then::Keep), off]),
+                ..Method::default()
+            },
+            fast: 1000.0,
+            slow: 100.0,
+            accel: Slope::Rate(1e4),
+            limit: LimitRule::Turn,
+            source: LimitSource::Switch,
+            index: IndexRule::None,
+            marks: Index { every: 0, offset: 0 },
+            stop: OriginStop::AtOnce,
+            way: 0,
+            collision: 0,
+            time_limit: None,
+        }
+    }
+
+    fn view(position: i64, switches: &[Input]) -> HomingView {
+        let mut on = Inputs::default();
+        switches.iter().for_each(|it| on.insert(*it));
+        let command = State::at_rest(position as f64);
+        HomingView { now: Instant::ZERO, command, position, switches: on, hard_stop: None }
+    }
+
+    /// A homing that goes forward from 0, and nothing to report.
+    fn seeking(order: HomeOrder) -> (Homing, Effects) {
+        let mut effects = Effects::new();
+        let mut homing = Homing::begin(order, &view(0, &[]));
+        let begun = homing.seek(&view(0, &[]), &mut effects);
+        assert!(matches!(begun, HomingMove::Go { forward: true, .. }), "{begun:?}");
+        assert_eq!(homing.begun(&view(0, &[]), &mut effects), None);
+        effects.clear();
+        (homing, effects)
+    }
+
+    #[test]
+    fn an_edge_brings_the_next_step_and_the_last_one_the_origin() {
+        let (mut homing, mut effects) = seeking(order());
+        let onto = view(500, &[Input::HomeSwitch]);
+        let next = homing.sample(&onto, &mut effects);
+        assert!(matches!(next, Some(HomingMove::Brake(_))), "{next:?}");
+        let next = homing.stopped(&onto, &mut effects);
+        assert!(matches!(next, Some(HomingMove::Go { forward: false, .. })), "{next:?}");
+        assert_eq!(homing.begun(&onto, &mut effects), None);
+        let off = view(499, &[]);
+        let next = homing.sample(&off, &mut effects);
+        assert!(matches!(next, Some(HomingMove::Go { .. })), "{next:?}");
+        let done = homing.stopped(&off, &mut effects);
+        assert_eq!(done, Some(HomingMove::Done { origin: 499 }));
+    }
+
+    #[test]
+    fn a_limit_turns_it_round_once() {
+        let (mut homing, mut effects) = seeking(order());
+        let limit = view(800, &[Input::LimitPos]);
+        let next = homing.sample(&limit, &mut effects);
+        assert!(matches!(next, Some(HomingMove::Brake(_))), "{next:?}");
+        assert_eq!(effects, [Effect::HomingLimit { forward: true, turns: true, at: 800 }]);
+        let next = homing.stopped(&limit, &mut effects);
+        assert!(matches!(next, Some(HomingMove::Go { forward: false, .. })), "{next:?}");
+        assert_eq!(homing.begun(&limit, &mut effects), None, "it goes away from there");
+        let other = homing.sample(&view(-800, &[Input::LimitNeg]), &mut effects);
+        let (why, alarm, by_limit) = (HomeEnd::Limit, false, true);
+        assert_eq!(other, Some(HomingMove::Abort { why, alarm, by_limit }));
+    }
+
+    #[test]
+    fn a_limit_is_a_fault_where_the_order_says_so() {
+        let (mut homing, mut effects) = seeking(HomeOrder { limit: LimitRule::Alarm, ..order() });
+        let next = homing.sample(&view(800, &[Input::LimitPos]), &mut effects);
+        let (why, alarm, by_limit) = (HomeEnd::Limit, true, false);
+        assert_eq!(next, Some(HomingMove::Abort { why, alarm, by_limit }));
+    }
+}

@@ -3,7 +3,7 @@
 use super::*;
 use crate::behaviour::effect::Replan;
 use crate::motion::Switch;
-use crate::vocabulary::{Input, Inputs};
+use crate::vocabulary::{Input, Inputs, LimitStop};
 use proptest::prelude::*;
 
 const HOW: Ramp = Ramp {
@@ -70,7 +70,7 @@ fn orders(gentle: bool) -> impl Strategy<Value = Vec<(u64, MotorOrder)>> {
 /// An axis with a clock, as a drive keeps it.
 struct MotorBench {
     motor: Motor,
-    wants: MotorLevels,
+    levels: MotorLevels,
     now: Instant,
     told: Vec<(Instant, Effect)>,
     /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
@@ -95,9 +95,9 @@ fn machines() -> impl Strategy<Value = Machine> {
 impl MotorBench {
     fn new(machine: Machine) -> Self {
         let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
-        let wants = MotorLevels { power: true, ..MotorLevels::default() };
+        let levels = MotorLevels { power: true, ..MotorLevels::default() };
         let mut bench =
-            Self { motor, wants, now: Instant::ZERO, told: Vec::new(), jump: 0.0, tuned: 0 };
+            Self { motor, levels, now: Instant::ZERO, told: Vec::new(), jump: 0.0, tuned: 0 };
         bench.follow();
         bench
     }
@@ -112,8 +112,8 @@ impl MotorBench {
                 switches.insert(signal);
             }
         }
-        self.motor.follow(self.now, MotorLevels { switches, ..self.wants });
-        self.wants.jog.iter_mut().for_each(|jog| jog.takes_over = false);
+        self.motor.follow(self.now, MotorLevels { switches, ..self.levels });
+        self.levels.jog.iter_mut().for_each(|jog| jog.takes_over = false);
         self.hear();
         if self.motor.take_switch_edge(self.now) {
             self.follow();
@@ -145,10 +145,10 @@ impl MotorBench {
             MotorOrder::Follow { power, stop, quick_stop, jog } => {
                 let jog = (jog != 0).then(|| ramp(3000.0 * f64::from(jog)));
                 let jog = jog.map(|ramp| {
-                    let same = self.wants.jog.is_some_and(|before| before.ramp == ramp);
+                    let same = self.levels.jog.is_some_and(|before| before.ramp == ramp);
                     Jog { ramp, takes_over: !same, by_position: false }
                 });
-                self.wants = MotorLevels { power, stop, quick_stop, jog, ..self.wants };
+                self.levels = MotorLevels { power, stop, quick_stop, jog, ..self.levels };
                 Ok(())
             }
             MotorOrder::Move { target, interrupt } => {
@@ -192,7 +192,7 @@ impl MotorBench {
             Phase::Jogging { forward } if ramp.speed != 0.0 => {
                 let speed = ramp.speed.abs() * if forward { 1.0 } else { -1.0 };
                 let ramp = Ramp { speed, ..ramp };
-                self.wants.jog = Some(Jog { ramp, takes_over: false, by_position: false });
+                self.levels.jog = Some(Jog { ramp, takes_over: false, by_position: false });
                 self.follow();
             }
             _ => return,
@@ -322,12 +322,12 @@ fn settings_that_change_are_followed() {
 
 #[test]
 fn says_why_it_does_not_start() {
-    let start = |wants: MotorLevels, running: bool| {
+    let start = |levels: MotorLevels, running: bool| {
         let mut bench = MotorBench::new(Machine::default());
         if running {
             bench.obey(MotorOrder::Run { speed: 1000.0 });
         }
-        bench.wants = wants;
+        bench.levels = levels;
         bench.follow();
         bench.motor.start_run(bench.now, ramp(5.0), false)
     };
@@ -348,14 +348,57 @@ fn coasts_only_while_it_moves() {
         let mut bench = MotorBench::new(Machine::default());
         bench.obey(MotorOrder::Move { target: 2000, interrupt: false });
         bench.advance_to(Instant::from_millis(300));
-        bench.wants.pause = pause;
+        bench.levels.pause = pause;
         bench.follow();
         bench.advance_to(Instant::from_millis(until));
         let held = bench.motor.phase() == Phase::Moving;
-        bench.wants.power = false;
+        bench.levels.power = false;
         bench.follow();
         (held, bench.told.iter().any(|(_, it)| *it == Effect::Coasting))
     };
     assert_eq!(coasts(false, 310), (true, true));
     assert_eq!(coasts(true, 2000), (true, false));
+}
+
+/// The names of the timers that wake an axis which makes `order`, in their order.
+fn wakes(machine: Machine, levels: MotorLevels, order: MotorOrder) -> String {
+    let mut bench = MotorBench::new(machine);
+    bench.levels = MotorLevels { power: true, ..levels };
+    bench.follow();
+    bench.obey(order);
+    let mut names = Vec::new();
+    while let Some((at, timer)) = bench.motor.next_timer() {
+        names.push(format!("{timer:?}"));
+        bench.advance_to(at);
+    }
+    names.join(" ")
+}
+
+#[test]
+fn wakes_by_name() {
+    let far = MotorOrder::Move { target: 3000, interrupt: false };
+    let (free, no_levels) = (Machine::default(), MotorLevels::default());
+    assert_eq!(wakes(free, no_levels, far), "TargetReached");
+    let hard_stop = Some([-1600, 1600]);
+    let machine = Machine { positive_limit: Some(1500), hard_stop, ..Machine::default() };
+    // A limit stops it at once, or on a ramp that may end beyond the hard stop.
+    let ramp = MotorLevels { limit_stop: LimitStop::Ramp, ..no_levels };
+    assert_eq!(wakes(machine, no_levels, far), "SwitchEdge");
+    assert_eq!(wakes(machine, ramp, far), "SwitchEdge HardStop Standstill");
+    let soft = MotorLevels { soft_limits: Some([-500, 500]), ..ramp };
+    assert_eq!(wakes(free, soft, far), "SoftLimit Standstill");
+    // At 4000 counts per second it is 80 behind.
+    let deviation = MotorLevels { deviation: Some(79.0), ..no_levels };
+    assert_eq!(wakes(free, deviation, far), "DeviationLimit TargetReached");
+    assert_eq!(wakes(free, no_levels, MotorOrder::Run { speed: 1000.0 }), "");
+    // One that stands at its target arrives at once.
+    let nowhere = MotorOrder::Move { target: 0, interrupt: false };
+    assert_eq!(wakes(free, no_levels, nowhere), "");
+}
+
+#[test]
+fn a_paused_move_waits_for_its_level_and_for_nothing_else() {
+    let levels = MotorLevels { pause: true, ..MotorLevels::default() };
+    let far = MotorOrder::Move { target: 3000, interrupt: false };
+    assert_eq!(wakes(Machine::default(), levels, far), "");
 }
