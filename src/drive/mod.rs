@@ -35,9 +35,7 @@ pub use timer::Timer;
 pub use view::View;
 
 use crate::bank::{Bank, Causes, Gate};
-use crate::behaviour::{
-    Chain, LevelControl, Motor, MotorLevels, PowerControl, PowerStage, Watchdog,
-};
+use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Watchdog};
 use crate::event::{Change, Ignored, Ordered};
 use crate::model::Model;
 use crate::serial::Mode;
@@ -275,7 +273,7 @@ impl Drive {
         self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
         self.comms.power_off();
         self.chain.end();
-        self.motor.follow(now, MotorLevels::default());
+        self.motor.follow(now, Default::default());
         self.tell_stages(None);
     }
 
