@@ -307,3 +307,86 @@ impl PositionLoop {
 fn beyond(mark: i64) -> f64 {
     (mark as f64).next_up()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Move;
+
+    const HOW: Move = Move { start_speed: 0.0, speed: 1000.0, accel: 1e4, decel: 1e4 };
+
+    fn ms(ms: u64) -> Instant {
+        Instant::from_millis(ms)
+    }
+
+    /// On its way from 0 to 5000; at 1000 counts per second and a gain of 50/s it is 20 counts behind.
+    fn moving(machine: Machine) -> PositionLoop {
+        let mut at = PositionLoop::at_rest(ms(0), 0.0, machine, Some(50.0));
+        let trajectory = Trajectory::to_position(ms(0), at.move_start(ms(0)), 5000, HOW);
+        assert!(!at.begin(ms(0), trajectory, LagRule::Leads));
+        at
+    }
+
+    #[test]
+    fn a_move_runs_behind_and_a_run_does_not() {
+        let at = moving(Machine::default());
+        let now = ms(1000);
+        assert!((at.deviation(now, true) - 20.0).abs() < 0.01, "{}", at.deviation(now, true));
+        assert_eq!(at.command(now).position - at.feedback(now).position, at.behind(now));
+        let mut at = at;
+        let here = at.feedback(now);
+        assert!(at.begin(now, Trajectory::to_speed(now, here, 1000.0, 1e4, 1e4), LagRule::None));
+        assert_eq!(at.behind(ms(1500)), 0.0);
+        // A move that takes its place commands as far ahead as the axis is to be behind.
+        let from = at.move_start(ms(1500));
+        assert!((from.position - at.feedback(ms(1500)).position - 20.0).abs() < 0.01, "{from:?}");
+    }
+
+    #[test]
+    fn a_hard_stop_holds_the_command_back_but_not_the_setpoint() {
+        let at = moving(Machine { hard_stop: Some([-100, 800]), ..Machine::default() });
+        let hit = at.next_hit(ms(0)).expect("it goes beyond");
+        assert_eq!(hit.position, 800);
+        let now = ms(2000);
+        assert!(at.is_held_back(now) && at.setpoint(now).position > 1000.0);
+        assert_eq!((at.position(now), at.command_count(now)), (800, 800));
+        let pressed = at.pressed_at(100.0, ms(0)).expect("it goes on");
+        assert_eq!(at.setpoint(pressed).position.floor(), 900.0);
+    }
+
+    #[test]
+    fn a_blocked_axis_catches_up_begins_anew_or_goes_on() {
+        let blocked = || {
+            let mut at = moving(Machine::default());
+            at.block(ms(1000));
+            let here = at.position(ms(1000));
+            assert_eq!((at.is_blocked(), at.position(ms(2000))), (true, here));
+            (at, here as f64)
+        };
+        let now = ms(2000);
+        let (mut at, here) = blocked();
+        let setpoint = at.setpoint(now);
+        assert!(at.unblock(now, Release::CatchUp));
+        assert_eq!((at.setpoint(now), at.feedback(now).position), (setpoint, here));
+        assert_eq!(at.position(ms(60_000)), 5000);
+        let (mut at, here) = blocked();
+        assert!(at.unblock(now, Release::GoOn));
+        assert_eq!(at.setpoint(now).position, here);
+        let (mut at, here) = blocked();
+        let rest = Trajectory::rest(now, here);
+        assert!(at.unblock(now, Release::Anew(rest)));
+        assert_eq!(at.setpoint(now), State::at_rest(here));
+        assert!(!at.unblock(now, Release::GoOn), "it is free already");
+    }
+
+    #[test]
+    fn the_other_way_round_it_is_in_the_same_place() {
+        let mut at = moving(Machine { positive_limit: Some(700), ..Machine::default() });
+        let trajectory = Trajectory::halt(ms(600), at.command(ms(600)));
+        at.begin(ms(600), trajectory, LagRule::Carried);
+        let (now, before) = (ms(5000), at.feedback(ms(5000)).position);
+        at.reverse(now);
+        assert!((at.feedback(now).position + before).abs() < 1e-6);
+        assert_eq!(at.machine().negative_limit, Some(-699));
+    }
+}
