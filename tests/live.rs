@@ -275,7 +275,7 @@ fn a_rig_in_use_is_set_up_no_more() {
     let sets_up: [fn(Rig); 6] = [
         |rig| drop(rig.with_seed(1)),
         |rig| drop(rig.with_fault("late")),
-        |rig| drop(rig.with_line_behaviour(drivemu::fault::LineBehaviour::default())),
+        |rig| drop(rig.with_line_behaviour(drivemu::medium::LineBehaviour::default())),
         |rig| drop(rig.with_scenario("steps: []")),
         |rig| drop(rig.with_framing(drivemu::line::Framing::Mbap)),
         |rig| drop(rig.with_state("")),

@@ -1,7 +1,7 @@
 //! Fault rules of a line: read for the drives that are on it.
 
 use super::BenchLine;
-use crate::fault::{self, FaultContext, FaultSet, Faults, LineBehaviour, NoRow};
+use crate::medium::{self, FaultContext, FaultSet, Faults, LineBehaviour, NoRow};
 use crate::problem::{Problem, suggest};
 use crate::wire::Span;
 

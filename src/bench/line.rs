@@ -2,7 +2,7 @@
 
 use super::{Device, WireSpec, match_line};
 use crate::bus::Bus;
-use crate::fault::{FaultRule, LineBehaviour, Pacing};
+use crate::medium::{FaultRule, LineBehaviour, Pacing};
 use crate::serial::Settings;
 
 /// One line of a bench.

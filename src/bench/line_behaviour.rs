@@ -2,7 +2,7 @@
 
 use super::raw::{RawBenchLine, RawChatter, RawPacing};
 use super::{Device, PortSpec};
-use crate::fault::{Chatter, LineBehaviour, Pacing};
+use crate::medium::{Chatter, LineBehaviour, Pacing};
 use crate::model::duration;
 use crate::problem::{Path, Problem};
 use crate::time::Duration;

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
-use crate::fault;
+use crate::medium;
 use crate::model::{Choices, Model};
 use crate::problem::{At, Path, Problem, Seg, bounds, section};
 use crate::serial::Settings;
@@ -310,7 +310,7 @@ impl BenchReader<'_> {
         for (i, raw) in raw.faults.iter().enumerate() {
             let path = path.key("faults").index(i);
             let taken = line.rule_names();
-            let fault_set = fault::compile(raw, &path, line, &taken, &mut self.problems);
+            let fault_set = medium::compile(raw, &path, line, &taken, &mut self.problems);
             line.put(fault_set);
         }
     }

@@ -1,6 +1,6 @@
 //! A bench file as it is written: the reference of the format.
 
-use crate::fault::raw::RawFault;
+use crate::medium::raw::RawFault;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 

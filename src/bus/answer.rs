@@ -2,8 +2,8 @@
 
 use super::{Bus, LinkId, Output};
 use crate::event::{DriveId, Transaction, What};
-use crate::fault::FaultHit;
 use crate::line::{Foreign, LineEvent};
+use crate::medium::FaultHit;
 use crate::time::Instant;
 use crate::wire::function::{EXCEPTION, READ};
 use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, Pdu, Response};

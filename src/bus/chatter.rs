@@ -4,8 +4,8 @@
 //! speak only when the line has been silent; when our master speaks, the unit that was to answer them does not.
 
 use super::{Bus, Link, LinkId};
-use crate::fault::Chatter;
 use crate::line::{Line, Units};
+use crate::medium::Chatter;
 use crate::rng::{Chance, Fork, Rng};
 use crate::serial::Settings;
 use crate::time::{Duration, Instant};

@@ -3,7 +3,7 @@
 use super::Bus;
 use crate::drive::Drive;
 use crate::event::{DeviceFault, DriveId, Remark, RemarkId, What};
-use crate::fault::{FaultRule, LineBehaviour};
+use crate::medium::{FaultRule, LineBehaviour};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{AlarmCause, Named};
 use std::ops::RangeInclusive;

@@ -2,7 +2,7 @@
 
 use super::{Bus, LinkId};
 use crate::event::{DriveId, FaultEffect, What};
-use crate::fault::{FaultHit, Faults};
+use crate::medium::{FaultHit, Faults};
 use crate::wire::{Adu, Frame, Pdu};
 
 impl Bus {

@@ -25,8 +25,8 @@ pub use request_counts::RequestCounts;
 
 use crate::drive::{Drive, Setup, View};
 use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
-use crate::fault::{Faults, LineBehaviour};
 use crate::line::{Framing, Line, Units};
+use crate::medium::{Faults, LineBehaviour};
 use crate::model::Model;
 use crate::serial::Mode;
 use crate::time::Instant;

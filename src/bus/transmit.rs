@@ -6,7 +6,7 @@
 
 use super::{Bus, LinkId, Output};
 use crate::event::DriveId;
-use crate::fault::{LineBehaviour, Pacing};
+use crate::medium::{LineBehaviour, Pacing};
 use crate::rng::Fork;
 use crate::time::{Duration, Instant};
 use crate::wire::Frame;

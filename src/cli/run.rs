@@ -7,7 +7,7 @@ use crate::bench::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, OverrideKey, PortSpec,
     Saved, SpecProblem, kind_of, parse_saved,
 };
-use crate::fault::{LineBehaviour, Pacing};
+use crate::medium::{LineBehaviour, Pacing};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
 use crate::problem::render::render;

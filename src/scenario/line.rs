@@ -4,7 +4,7 @@ use super::order::{NoOrder, Order};
 use crate::bench::BenchLine;
 use crate::bus::{Bus, Command, LineCommand};
 use crate::event::DriveId;
-use crate::fault::{FaultSet, LineBehaviour};
+use crate::medium::{FaultSet, LineBehaviour};
 use crate::model::Model;
 use crate::problem::{Path, Problem, bounds, suggest};
 

@@ -7,8 +7,8 @@ use crate::bench::{
 use crate::bus::{Bus, Command, CommandError, LineCommand, LinkId, Output};
 use crate::drive::View;
 use crate::event::{DriveId, Event};
-use crate::fault::LineBehaviour;
 use crate::line::Framing;
+use crate::medium::LineBehaviour;
 use crate::model::{Choices, load};
 use crate::problem::Problem;
 use crate::scenario::{self, Director, Order, Verdict};

@@ -2,7 +2,7 @@
 
 use super::{READ, WRITE, ask, drive};
 use drivemu::bench::raw::schema;
-use drivemu::fault::raw::KEYS;
+use drivemu::medium::raw::KEYS;
 use drivemu::time::Duration;
 
 /// What comes back, piece by piece, while a master reads and writes for a while.

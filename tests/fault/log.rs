@@ -1,8 +1,8 @@
 //! What the log for programs says about each kind; the log for people stands in docs/faults.md.
 
 use super::{READ, acme, ask, drive};
-use drivemu::fault::FaultKind;
 use drivemu::log::json::object;
+use drivemu::medium::FaultKind;
 use serde_json::{Value, json};
 
 #[test]

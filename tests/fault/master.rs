@@ -1,7 +1,7 @@
 //! A master that nobody here wrote notices each kind, under a paused clock: tokio-modbus.
 
 use super::{drive, drive_of};
-use drivemu::fault::FaultKind;
+use drivemu::medium::FaultKind;
 use drivemu::testkit::live;
 use std::time::Duration;
 use tokio_modbus::client::{Context, rtu};

@@ -5,8 +5,8 @@ use crate::documents::fenced;
 use crate::expect::{read, root};
 use crate::kit::{Files, bench_line, line_of, text_of};
 use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
-use drivemu::fault::FaultKind;
-use drivemu::fault::raw::KEYS;
+use drivemu::medium::FaultKind;
+use drivemu::medium::raw::KEYS;
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 

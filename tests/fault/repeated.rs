@@ -3,7 +3,7 @@
 use super::{SILENCE, acme, ask, drive_of, frame};
 use drivemu::bus::{Command, DriveOrder};
 use drivemu::event::{Change, DriveId, Event, What};
-use drivemu::fault::FaultKind;
+use drivemu::medium::FaultKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use drivemu::vocabulary::{Action, AlarmCause, Named};

@@ -4,7 +4,7 @@ use super::{READ, ask, drive_of, effects};
 use crate::properties::traffic::{Piece, pieces};
 use drivemu::bus::WakeReason;
 use drivemu::event::{FaultEffect, What};
-use drivemu::fault::FaultKind;
+use drivemu::medium::FaultKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use proptest::prelude::*;

@@ -1,7 +1,7 @@
 //! No inert key: each line behaviour that a bench file can say changes what comes over the wire. Presets bring theirs.
 
 use super::{ANSWER, Bench, MS, READ, frame, line};
-use drivemu::fault::{FaultKind, LineBehaviour};
+use drivemu::medium::{FaultKind, LineBehaviour};
 
 /// Everything that leaves in a while with two requests in it.
 #[cfg(feature = "cli")]

@@ -3,7 +3,7 @@
 use super::{ANSWER, Bench, MS, READ, characters, frame};
 use crate::expect::{read, root};
 use drivemu::bus::{Output, WakeReason};
-use drivemu::fault::Pacing;
+use drivemu::medium::Pacing;
 use drivemu::time::Duration;
 use drivemu::wire::{ascii, rtu};
 

@@ -12,7 +12,7 @@ const FORBIDDEN: [(&str, &[&str]); 7] = [
     ("behaviour", &["wire", "line", "model", "units", "problem"]),
     ("log", &["problem", "line"]),
     ("drive", &["problem"]),
-    ("fault", &["model", "line", "motion", "serial"]),
+    ("medium", &["model", "motion", "vocabulary"]),
 ];
 
 /// The one file of the testkit that may use the shell: all others work without it.

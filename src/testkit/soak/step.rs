@@ -7,7 +7,7 @@ use super::routine::{RoutineAxis, routine};
 use super::scene::Scene;
 use crate::bus::{Command, DriveOrder};
 use crate::event::DriveId;
-use crate::fault::FaultKind;
+use crate::medium::FaultKind;
 use crate::time::Duration;
 use crate::vocabulary::{AlarmCause, Named};
 use std::fmt;
