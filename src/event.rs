@@ -6,6 +6,7 @@ mod replanned;
 pub use no_effect::{Ignored, Ordered};
 pub use replanned::Replanned;
 
+use crate::medium::FaultHit;
 use crate::serial::{Mode, Settings};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{Action, AlarmCause, Condition, HomeEnd, HomingStep, Refusal, RowId};
@@ -15,7 +16,7 @@ use crate::wire::rtu::BadCrc;
 use crate::wire::{Frame, Inline, NoiseCause, Pdu};
 
 /// Something that happened on a line, and when.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
     /// When, in the emulated world.
     pub at: Instant,
@@ -28,7 +29,7 @@ pub struct Event {
 pub struct DriveId(pub u16);
 
 /// What happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum What {
     /// A drive heard a request and answered.
     Transaction(Transaction),
@@ -94,16 +95,7 @@ pub enum What {
     /// A TCP stream that could not be followed and was closed.
     Lost(BadHeader),
     /// A fault rule did something to a request or its reply.
-    Fault {
-        /// Which rule.
-        rule: RuleId,
-        /// The unit that was asked.
-        unit: u8,
-        /// What it did.
-        effect: FaultEffect,
-        /// How often it has acted by now.
-        hit: u64,
-    },
+    Fault(FaultHit),
     /// A step of a scenario.
     Step(RemarkId),
     /// A master has given an order again whose answer it can't have heard, and the drive got it twice.
@@ -175,52 +167,6 @@ pub enum Outcome {
     Passed,
     /// It does not hold, or something could not be done.
     Failed,
-}
-
-/// Number of a fault rule on its bus, from 0; none is used for another name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct RuleId(pub u16);
-
-/// What a fault rule did to a request or its reply, with the numbers that it drew.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FaultEffect {
-    /// No drive saw the request.
-    RequestLost,
-    /// The reply never left.
-    ReplyLost,
-    /// The reply left with a wrong checksum.
-    BadChecksum,
-    /// So many bits of the reply were turned over.
-    BitsFlipped(u8),
-    /// So many bytes at the end were cut off.
-    Truncated(u8),
-    /// So many random bytes followed.
-    Extra(u8),
-    /// So many random bytes came before.
-    Garbage(u8),
-    /// The reply leaves so much later.
-    Delayed(Duration),
-    /// The reply leaves when the next request comes.
-    Late,
-    /// The reply left twice.
-    Duplicated,
-    /// The reply left in two pieces.
-    Split {
-        /// Bytes in the first; `None` is half of them.
-        at: Option<u16>,
-        /// Time between them.
-        gap: Duration,
-    },
-    /// The reply named this unit.
-    WrongUnit(u8),
-    /// The reply named this function.
-    WrongFunction(u8),
-    /// This exception answered; no drive executed anything.
-    Exception(u8),
-    /// The exception for a busy server answered; no drive executed anything.
-    Busy,
-    /// The request came back first.
-    Echoed,
 }
 
 /// A request to one drive and its answer.

@@ -17,6 +17,9 @@ impl Instant {
     /// The beginning.
     pub const ZERO: Self = Self { ns: 0 };
 
+    /// The end of time, 584 years on.
+    pub const END: Self = Self { ns: u64::MAX };
+
     /// The moment `ns` nanoseconds after the beginning.
     pub const fn from_nanos(ns: u64) -> Self {
         Self { ns }

@@ -335,7 +335,7 @@ fn the_slices_have_something_to_cut() {
         events
             .iter()
             .filter(|it| it.at == Instant::from_millis(ms))
-            .map(|it| it.what)
+            .map(|it| it.what.clone())
             .collect::<Vec<_>>()
     };
     assert!(matches!(at(23)[..], [What::BadCrc { .. }]), "silence ends a frame");

@@ -294,7 +294,7 @@ fn storing_all_in_a_cycle_is_told_too() {
         told(&rig),
         ["unit 1 excessive EEPROM writes: all parameters stored 100 times within 60 s"]
     );
-    let last = rig.events().last().expect("an event").what;
+    let last = rig.events().last().expect("an event").what.clone();
     let within = Some(Duration::from_secs(60));
     let wear = Change::Wear { row: None, writes: 100, within };
     assert!(matches!(last, What::Drive { change, .. } if change == wear));

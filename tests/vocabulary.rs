@@ -306,7 +306,7 @@ fn each_action_acts() {
             Action::RestoreFactory => Change::FactoryRestored,
             Action::PowerCycle => Change::PoweredOn,
         };
-        let last = rig.events().last().map(|event| event.what);
+        let last = rig.events().last().map(|event| event.what.clone());
         let told = matches!(last, Some(What::Drive { change, .. }) if change == want);
         assert!(told, "`{}`\n{}", action.name(), rig.log());
     }

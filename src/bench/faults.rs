@@ -1,8 +1,9 @@
 //! Fault rules of a line: read for the drives that are on it.
 
 use super::BenchLine;
-use crate::medium::{self, FaultContext, FaultSet, Faults, LineBehaviour, NoRow};
+use crate::medium::{self, FaultContext, FaultRules, FaultSet, LineBehaviour, Medium, NoRow};
 use crate::problem::{Problem, suggest};
+use crate::time::Instant;
 use crate::wire::Span;
 
 impl FaultContext for BenchLine {
@@ -44,7 +45,7 @@ impl BenchLine {
     /// # Errors
     /// Everything that is wrong with it, each with its place in `spec`.
     pub fn fault(&self, spec: &str, taken: &[&str]) -> Result<FaultSet, Vec<Problem>> {
-        fault::parse(spec, self, taken)
+        medium::parse(spec, self, taken)
     }
 
     /// Puts such a rule behind those that the line has.
@@ -69,14 +70,16 @@ impl BenchLine {
             std::mem::take(&mut self.line_behaviour).and(fault_set.line_behaviour);
     }
 
-    /// The rules, none of which has acted yet.
-    pub(super) fn fault_set(&self, seed: u64) -> Faults {
-        let mut faults = Faults::new(seed, &self.name);
+    /// What lies between masters and drives, before anything has passed. What its rules draw depends on `seed`.
+    pub(super) fn medium(&self, seed: u64) -> Medium {
+        let mut rules = FaultRules::new(seed, &self.name);
         for rule in &self.faults {
             // Names are unique once they are read.
-            let added = faults.add(rule.clone());
+            let added = rules.add(rule.clone());
             debug_assert!(added);
         }
-        faults
+        let mut medium = Medium::new(rules);
+        medium.set_behaviour(Instant::ZERO, self.line_behaviour.clone());
+        medium
     }
 }

@@ -72,9 +72,7 @@ impl BenchLine {
     /// A bus with all drives of this line on it, switched on. On a serial line they hear what is said in
     /// the line's mode; on Modbus TCP there is none. What its fault rules draw depends on `seed`.
     pub fn bus(&self, seed: u64) -> Bus {
-        let mut bus = Bus::new();
-        bus.set_faults(self.fault_set(seed));
-        bus.set_line_behaviour(self.line_behaviour.clone());
+        let mut bus = Bus::with_medium(self.medium(seed));
         if !self.port.is_tcp() {
             bus.set_mode(self.wire.mode);
         }

@@ -1,7 +1,7 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
 use super::line_behaviour::{line_behaviour, strangers};
-use super::raw::{KEYS, RawBenchDrive, RawBenchLine, RawPacing};
+use super::raw::{RawBenchDrive, RawBenchLine, RawPacing, keys};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, MachineProblem, Mismatch,
     OverrideKey, PortSpec, Saved, SpecProblem, machine,
@@ -77,7 +77,8 @@ impl BenchReader<'_> {
     fn bench(&mut self, file: &Value) -> Bench {
         let mut head = file.clone();
         let lines = head.as_mapping_mut().and_then(|head| head.remove("lines"));
-        let head: Option<BenchHead> = section::read(&head, &Path::root(), KEYS, &mut self.problems);
+        let head: Option<BenchHead> =
+            section::read(&head, &Path::root(), &keys(), &mut self.problems);
         let seed = head.and_then(|head| head.seed);
         let path = Path::root().key("lines");
         let items = match &lines {
@@ -97,7 +98,8 @@ impl BenchReader<'_> {
             if self.has_too_many(value, &path) {
                 continue;
             }
-            let raw: Option<RawBenchLine> = section::read(value, &path, KEYS, &mut self.problems);
+            let raw: Option<RawBenchLine> =
+                section::read(value, &path, &keys(), &mut self.problems);
             let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
             if lines.iter().any(|it| it.name == line.name) {
                 let what = format!("duplicate line name `{}`", line.name);

@@ -1,8 +1,9 @@
 //! A bench file as it is written: the reference of the format.
 
+use crate::medium;
 use crate::medium::raw::RawFault;
 use serde::{Deserialize, Deserializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
@@ -162,24 +163,15 @@ pub fn schema() -> serde_json::Value {
     schemars::schema_for!(RawBench).to_value()
 }
 
-/// Every key of the format, for advice on unknown ones.
-pub const KEYS: &[&str] = &[
+/// The keys of the format that are not those of a fault rule alone.
+const OWN_KEYS: &[&str] = &[
     "ascii",
-    "at",
-    "bits",
-    "bytes",
     "chatter",
     "chunk",
-    "code",
-    "count",
-    "do",
     "drives",
     "echo",
     "every",
     "faults",
-    "from",
-    "function",
-    "gap_ms",
     "hard_stop",
     "home",
     "index",
@@ -187,7 +179,6 @@ pub const KEYS: &[&str] = &[
     "machine",
     "match_baud",
     "model",
-    "ms",
     "name",
     "negative_limit",
     "offset",
@@ -195,22 +186,23 @@ pub const KEYS: &[&str] = &[
     "pacing",
     "position",
     "positive_limit",
-    "probability",
     "pty",
-    "register",
     "rtu_over_tcp",
     "seed",
     "serial",
     "set",
     "settings",
-    "skip",
     "start",
     "strict",
     "switches",
     "tcp",
     "terminals",
-    "to",
     "unit",
     "units",
-    "until",
 ];
+
+/// Every key of the format, in order, for advice on unknown ones.
+pub fn keys() -> Vec<&'static str> {
+    let keys: BTreeSet<_> = OWN_KEYS.iter().copied().chain(medium::raw::keys()).collect();
+    keys.into_iter().collect()
+}

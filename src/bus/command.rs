@@ -145,7 +145,7 @@ impl Bus {
             Command::Line(command) => self.line_command(command),
             Command::Drive(drive, order) => self.drive_order(drive, order),
         };
-        (0..self.drives.len() as u16).for_each(|i| self.after_drive(DriveId(i)));
+        self.stations.ids().for_each(|id| self.after_drive(id));
         reply
     }
 
@@ -153,7 +153,7 @@ impl Bus {
         match command {
             LineCommand::AddFault(rule) => return self.add_fault(rule),
             LineCommand::RemoveFault(name) => return self.remove_fault(name),
-            LineCommand::SetBehaviour(line_behaviour) => self.set_line_behaviour(line_behaviour),
+            LineCommand::SetBehaviour(behaviour) => self.medium.set_behaviour(self.now, behaviour),
             LineCommand::Tell(remark) => self.remember(remark),
         }
         Ok(Reply::Done)
@@ -161,7 +161,7 @@ impl Bus {
 
     fn drive_order(&mut self, id: DriveId, order: DriveOrder) -> Result<Reply, CommandError> {
         let now = self.now;
-        let drive = self.drives.get_mut(usize::from(id.0)).ok_or(CommandError::NoDrive(id.0))?;
+        let drive = self.stations.get_mut(id).ok_or(CommandError::NoDrive(id.0))?;
         match order {
             DriveOrder::Terminal { index, signal } => {
                 terminal(drive, index)?;
@@ -212,19 +212,16 @@ impl Bus {
     }
 
     fn add_fault(&mut self, rule: FaultRule) -> Result<Reply, CommandError> {
-        let on_tcp = self.mode.is_none();
-        if let Some(why) = rule.act.kind().impossible_on_tcp().filter(|_| on_tcp) {
-            return Err(CommandError::IdleFault { name: rule.name, why });
-        }
         let name = rule.name.clone();
-        match self.faults.add(rule) {
-            true => Ok(Reply::Done),
-            false => Err(CommandError::FaultTaken(name)),
+        match self.medium.add_rule(rule) {
+            Ok(true) => Ok(Reply::Done),
+            Ok(false) => Err(CommandError::FaultTaken(name)),
+            Err(why) => Err(CommandError::IdleFault { name, why }),
         }
     }
 
     fn remove_fault(&mut self, name: String) -> Result<Reply, CommandError> {
-        match self.faults.remove(&name) {
+        match self.medium.remove_rule(&name) {
             true => Ok(Reply::Done),
             false => Err(CommandError::NoFault(name)),
         }

@@ -1,166 +1,114 @@
 //! One line with its drives: bytes and time in, bytes and events out. No clock, no socket, no lock.
 //!
-//! Contract: feed one input, drain [`Bus::poll_output`] to `None`, come back at [`Bus::poll_at`] or with the
-//! next input. Deadlines at or before `now` happen before the input that arrives at `now`; equal
-//! deadlines happen in a fixed order: links, bytes that come through, replies that begin, others on the line,
-//! then drives by number.
+//! Contract: feed one input, drain [`Bus::poll_output`] to `None`, come back at [`Bus::poll_at`] or with the next
+//! input. Deadlines at or before `now` happen before the input that arrives at `now`; equal ones happen in a fixed
+//! order: links, bytes that come through, replies that begin, others on the line, then drives by number.
 //!
 //! A serial line has one link. A TCP port has one for each client, all onto the same drives.
 
-mod answer;
-mod chatter;
 mod command;
 mod deadlines;
-mod faults;
+mod links;
 mod output;
-mod port;
 mod repeat_detector;
 mod request_counts;
-mod transmit;
-mod transmit_queue;
+mod stations;
 
+pub use crate::medium::LinkId;
 pub use command::{BETWEEN_EDGES, Command, CommandError, DriveOrder, LineCommand, Reply};
-pub use output::{LinkId, Output, Wake, WakeReason};
+pub use output::{Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
 
 use crate::drive::{Drive, Setup, View};
-use crate::event::{Change, DriveId, Event, Remark, RemarkId, What};
-use crate::line::{Framing, Line, Units};
-use crate::medium::{Faults, LineBehaviour};
+use crate::event::{Change, DriveId, Event, PortSettings, Remark, RemarkId, Transaction, What};
+use crate::line::{Framing, Line};
+use crate::medium::{
+    DriveReply, FaultRules, LineBehaviour, MasterRequest, Medium, Passage, PendingHit,
+};
 use crate::model::Model;
 use crate::serial::Mode;
-use crate::time::Instant;
-use crate::wire::{BROADCAST, Frame};
-use chatter::ChatterState;
+use crate::time::{Duration, Instant};
+use crate::wire::function::READ;
+use crate::wire::rtu::BadCrc;
+use crate::wire::{Adu, BROADCAST, Exception, Frame, Inline, NoiseCause, Pdu, Response};
 use deadlines::{Deadlines, WakeTrace};
+use links::{LineInput, Links};
+use output::OutputQueue;
 use repeat_detector::RepeatDetector;
+use stations::Stations;
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
-use transmit::LatencyTimer;
-use transmit_queue::{Ticket, Timed, TransmitQueue};
 
 /// Bytes that a line looks at before it is asked what it heard.
 const CHUNK: usize = 256;
 
 /// One line with its drives.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Bus {
     now: Instant,
-    links: BTreeMap<LinkId, Link>,
-    next_link: u32,
-    drives: Vec<Drive>,
-    /// Device that each drive belongs to: the stations of one device share their power.
-    devices: Vec<u16>,
-    /// What each drive has heard.
-    request_counts: Vec<RequestCounts>,
+    links: Links,
+    stations: Stations,
     /// What was told of steps.
     remarks: Vec<Remark>,
-    /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf.
+    /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf. The medium follows once
+    /// what is on its way has left.
     mode: Option<Mode>,
-    /// The same for what is on its way: the line moves when that has left.
-    spoken: Option<Mode>,
-    units: Units,
-    by_unit: [Option<DriveId>; 256],
     deadlines: Deadlines,
     wakes: WakeTrace,
-    faults: Faults,
-    line_behaviour: LineBehaviour,
-    /// The timer of the adapter in front of the master, if there is one.
-    adapter: Option<LatencyTimer>,
-    queue: TransmitQueue,
-    /// Bytes on the wire to the master.
-    leaving: Timed,
-    chatter: Option<ChatterState>,
+    medium: Medium,
     repeat_detector: RepeatDetector,
-    outputs: VecDeque<Output>,
-}
-
-#[derive(Debug)]
-struct Link {
-    line: Line,
-    /// A client of Modbus TCP.
-    tcp: bool,
-    /// When the last character of a reply has left.
-    free: Instant,
-    /// What the adapter is still collecting.
-    lump: Option<Ticket>,
+    outputs: OutputQueue,
 }
 
 impl Bus {
-    /// A line without anything on it.
+    /// A line without anything on it, on which nothing goes wrong.
     pub fn new() -> Self {
-        Self {
-            now: Instant::ZERO,
-            links: BTreeMap::new(),
-            next_link: 0,
-            drives: Vec::new(),
-            devices: Vec::new(),
-            request_counts: Vec::new(),
-            remarks: Vec::new(),
-            mode: None,
-            spoken: None,
-            units: Units::new(),
-            by_unit: [None; 256],
-            deadlines: Deadlines::default(),
-            wakes: WakeTrace::default(),
-            faults: Faults::default(),
-            line_behaviour: LineBehaviour::default(),
-            adapter: None,
-            queue: TransmitQueue::default(),
-            leaving: Timed::default(),
-            chatter: None,
-            repeat_detector: RepeatDetector::default(),
-            outputs: VecDeque::with_capacity(16),
-        }
+        Self::default()
+    }
+
+    /// A line without anything on it.
+    pub fn with_medium(medium: Medium) -> Self {
+        Self { medium, ..Self::default() }
     }
 
     /// Puts one station of a device on the line; `setup` says which. Stations of one `device` share
     /// their power.
     pub fn add(&mut self, model: Arc<Model>, setup: &Setup, device: u16) -> DriveId {
-        let id = DriveId(self.drives.len() as u16);
-        self.drives.push(Drive::new(model, setup, self.now));
-        self.devices.push(device);
-        self.request_counts.push(RequestCounts::default());
-        self.readdress();
+        let id = self.stations.add(Drive::new(model, setup, self.now), device);
+        self.stations.readdress(self.mode);
         self.after_drive(id);
         id
     }
 
     /// Opens a link onto the line.
     pub fn open(&mut self, framing: Framing) -> LinkId {
-        let id = LinkId(self.next_link);
-        self.next_link += 1;
-        let tcp = framing == Framing::Mbap;
-        let line = Line::new(framing);
-        self.links.insert(id, Link { line, tcp, free: Instant::ZERO, lump: None });
+        let id = self.links.open(framing);
+        self.medium.open(id);
         id
     }
 
     /// Says how the line talks. Until then, and on TCP, every drive hears everything.
     pub fn set_mode(&mut self, mode: Mode) {
         self.mode = Some(mode);
-        self.spoken = self.mode;
-        self.readdress();
+        self.medium.set_mode(self.mode);
+        self.stations.readdress(self.mode);
     }
 
     /// Tells frames on all serial links apart in another way from now on. What was half received is forgotten. Modbus
     /// TCP stays as it is.
     pub fn reframe_all(&mut self, framing: Framing) {
-        let serial = self.links.values_mut().filter(|link| !link.tcp);
-        serial.for_each(|link| link.line = Line::new(framing));
+        self.links.reframe_all(framing);
     }
 
     /// Closes a link. What was half received on it is forgotten, and what was to be sent on it.
     pub fn close(&mut self, link: LinkId) {
-        self.forget_replies(link);
-        self.links.remove(&link);
+        self.medium.close(link);
+        self.links.close(link);
     }
 
     /// Forgets what was to be sent on a link: whoever asked for it has left, and another master is there.
     pub fn forget_replies(&mut self, link: LinkId) {
-        self.queue.forget(link);
-        self.leaving.forget(link);
+        self.medium.forget(link);
     }
 
     /// Closes a link whose master has gone: what it said last has ended, as if by silence, and nobody hears the
@@ -175,27 +123,42 @@ impl Bus {
 
     /// The drives, in the order in which they were added.
     pub fn drives(&self) -> impl ExactSizeIterator<Item = (DriveId, &Drive)> {
-        self.drives.iter().enumerate().map(|(i, drive)| (DriveId(i as u16), drive))
+        self.stations.iter()
     }
 
     /// One drive.
     pub fn drive(&self, id: DriveId) -> &Drive {
-        &self.drives[usize::from(id.0)]
+        self.stations.drive(id)
     }
 
     /// Which device of the line a drive is a station of.
     pub fn device(&self, id: DriveId) -> u16 {
-        self.devices[usize::from(id.0)]
+        self.stations.device(id)
     }
 
     /// The drive that answers to `unit`.
     pub fn find(&self, unit: u8) -> Option<DriveId> {
-        self.by_unit[usize::from(unit)]
+        self.stations.find(unit)
     }
 
     /// How the line talks, if it is a serial one.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
+    }
+
+    /// The fault rules of the line.
+    pub fn faults(&self) -> &FaultRules {
+        self.medium.rules()
+    }
+
+    /// What the line always does.
+    pub fn line_behaviour(&self) -> &LineBehaviour {
+        self.medium.behaviour()
+    }
+
+    /// Requests that a drive has executed since the start.
+    pub fn request_counts(&self, id: DriveId) -> RequestCounts {
+        self.stations.counts(id)
     }
 
     /// How often a master has given a drive an order again whose answer it can't have heard.
@@ -211,15 +174,35 @@ impl Bus {
     /// Takes bytes that arrived on `link` at `now`.
     pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
         self.advance_to(now);
-        self.interrupt_chatter();
+        if self.medium.interrupt_chatter(self.now) {
+            // Our master has waited for silence, so what others said before has ended on all links.
+            let open: Vec<_> = self.links.silences().collect();
+            open.into_iter().for_each(|(silence, link)| self.listen(link, silence));
+        }
         for chunk in bytes.chunks(CHUNK) {
-            let Some(it) = self.links.get_mut(&link) else { return };
-            it.line.receive(self.now, chunk);
-            if self.line_behaviour.echo {
-                self.pass(link, &Frame::from_slice(chunk));
+            if !self.links.receive(self.now, link, chunk) {
+                return;
             }
+            self.medium.on_bytes(self.now, link, chunk);
+            self.place_transmits();
             self.listen(link, self.now);
         }
+    }
+
+    /// Takes bytes that arrived on `link` at `now`, sent at `baud` rather than the speed of the line: no drive
+    /// understands them.
+    pub fn receive_unheard(&mut self, now: Instant, link: LinkId, bytes: &[u8], baud: u32) {
+        self.advance_to(now);
+        bytes.chunks(CHUNK).for_each(|chunk| self.medium.on_bytes(self.now, link, chunk));
+        self.place_transmits();
+        let (head, why) = (Inline::from_slice(bytes), NoiseCause::Speed(baud));
+        self.emit(What::Noise { head, len: bytes.len(), why });
+    }
+
+    /// Tells how the port of a master is set, and whether the line understands it.
+    pub fn tell_port(&mut self, now: Instant, port: PortSettings, understood: bool) {
+        self.advance_to(now);
+        self.emit(What::Port { port, understood });
     }
 
     /// Lets time pass up to `now`: whatever is due until then happens, each thing at its own instant.
@@ -227,27 +210,20 @@ impl Bus {
     pub fn advance_to(&mut self, now: Instant) {
         while let Some(wake) = self.poll_at().filter(|wake| wake.at <= now) {
             self.now = self.now.max(wake.at);
-            match wake.reason {
-                // The drive says by itself what has woken it.
-                WakeReason::Drive(..) => {}
-                _ => self.wakes.note(wake),
+            // A drive says by itself what has woken it.
+            if !matches!(wake.reason, WakeReason::Drive(..)) {
+                self.wakes.note(wake);
             }
             match wake.reason {
                 WakeReason::Silence(link) => self.listen(link, self.now),
-                WakeReason::Through(_) => {
-                    let through = self.leaving.take_first();
-                    let output = through.map(|(link, frame)| Output::Transmit { link, frame });
-                    self.outputs.extend(output);
-                    self.move_line();
-                }
-                WakeReason::Reply(_) => {
-                    let due = self.queue.timed.take_first();
-                    due.into_iter().for_each(|(link, frame)| self.transmit(link, frame));
+                WakeReason::Through(_) | WakeReason::Reply(_) => {
+                    self.medium.on_timeout(self.now);
+                    self.place_transmits();
                     self.move_line();
                 }
                 WakeReason::Chatter => self.let_others_speak(),
                 WakeReason::Drive(id, _) => {
-                    self.drives[usize::from(id.0)].advance_to(self.now);
+                    self.stations.drive_mut(id).advance_to(self.now);
                     self.after_drive(id);
                 }
             }
@@ -281,86 +257,217 @@ impl Bus {
 
     /// The next thing that leaves the bus.
     pub fn poll_output(&mut self) -> Option<Output> {
-        self.outputs.pop_front()
+        self.outputs.poll(&mut self.medium)
     }
 
     /// When silence will end what was half received on `link`.
     pub fn silence_at(&self, link: LinkId) -> Option<Instant> {
-        self.links.get(&link)?.line.deadline()
+        self.links.line(link)?.deadline()
     }
 
     /// Is what was received on `link` so far a whole frame that only waits for silence?
     pub fn is_whole(&self, link: LinkId) -> bool {
-        self.links.get(&link).is_some_and(|it| it.line.waits_for_silence_only())
+        self.links.line(link).is_some_and(Line::waits_for_silence_only)
     }
 
     /// When the first watchdog of a drive expires if no master says more.
     pub fn watchdog_at(&self) -> Option<Instant> {
-        self.drives.iter().filter_map(Drive::watchdog_at).min()
+        self.stations.iter().filter_map(|(_, drive)| drive.watchdog_at()).min()
     }
 
     /// When to come back at the latest, and why.
     pub fn poll_at(&self) -> Option<Wake> {
-        let silence = |(id, link): (&LinkId, &Link)| {
-            let at = link.line.deadline()?;
-            Some(Wake { at, reason: WakeReason::Silence(*id) })
-        };
-        let silences = self.links.iter().filter_map(silence);
-        let through = |(at, link)| Wake { at, reason: WakeReason::Through(link) };
-        let reply = |(at, link)| Wake { at, reason: WakeReason::Reply(link) };
-        let others = |others: &ChatterState| Wake { at: others.at(), reason: WakeReason::Chatter };
-        let bytes = self.leaving.first().map(through);
-        let replies = self.queue.timed.first().map(reply);
-        let others = self.chatter.as_ref().map(others);
-        let drive = |(at, id, timer)| Wake { at, reason: WakeReason::Drive(id, timer) };
-        let drives = self.deadlines.first().map(drive);
-        let replies = bytes.into_iter().chain(replies);
-        silences.chain(replies).chain(others).chain(drives).min_by_key(|wake| wake.at)
+        let silences = self.links.silences().map(|(at, link)| (at, WakeReason::Silence(link)));
+        let medium = self.medium.poll_at().map(|(at, timer)| (at, timer.into()));
+        let drives =
+            self.deadlines.first().map(|(at, id, timer)| (at, WakeReason::Drive(id, timer)));
+        let first = silences.chain(medium).chain(drives).min_by_key(|(at, _)| *at);
+        first.map(|(at, reason)| Wake { at, reason })
+    }
+
+    /// Takes everything that `link` has received if there was silence until `now`.
+    fn listen(&mut self, link: LinkId, now: Instant) {
+        while let Some(input) = self.links.next(now, link, &self.stations) {
+            match input {
+                LineInput::Request { unit, pdu } => self.answer(link, unit, pdu),
+                LineInput::Broadcast(pdu) => self.broadcast(link, pdu),
+                LineInput::ForeignRequest(what) => {
+                    self.medium.on_foreign_request(self.now, link);
+                    self.place_transmits();
+                    self.emit(what);
+                }
+                LineInput::BadCrc { frame, crc } => self.answer_bad_crc(link, frame, crc),
+                LineInput::Other(what) => self.emit(what),
+                LineInput::Lost(what) => {
+                    self.emit(what);
+                    self.outputs.push(Output::Close(link));
+                }
+            }
+        }
+    }
+
+    fn answer(&mut self, link: LinkId, unit: u8, request: Pdu) {
+        let addressed = self.stations.find(unit);
+        let Some(id) = addressed.or_else(|| self.drives().next().map(|(id, _)| id)) else { return };
+        let now = self.now;
+        let adu = Adu { unit, pdu: &request };
+        // Whoever says 0 or 255 on TCP means this drive, and a rule about its unit means that too.
+        let asked = if addressed.is_some() { unit } else { self.drive(id).unit() };
+        let mut hit = self.on_request(link, adu, asked);
+        let function = adu.function();
+        let exception = |code| Response::Exception(Exception { function, code }).encode();
+        let mut repeated = None;
+        match hit.as_ref().map_or(Passage::Delivered, PendingHit::passage) {
+            Passage::Lost => {}
+            Passage::Answered(code) => {
+                self.reply(link, id, unit, &exception(code), hit.as_mut());
+            }
+            Passage::Delivered => {
+                let drive = self.stations.drive_mut(id);
+                let (answer, refusal) = match drive.request(now, &request) {
+                    Ok(response) => (response.encode(), None),
+                    Err(refusal) => (exception(refusal.code), Some(refusal)),
+                };
+                let issued = drive.issued();
+                self.stations.count(id, function);
+                // What an answer confirms must be there after a power failure.
+                self.keep(id);
+                let later = self.reply(link, id, unit, &answer, hit.as_mut());
+                let transaction = Transaction { drive: id, unit, request, answer, refusal };
+                self.emit(What::Transaction(transaction));
+                let arrives = later.map(|later| now + later);
+                repeated = self.repeat_detector.executed(now, id, request, issued, arrives);
+            }
+        }
+        hit.into_iter().for_each(|hit| self.emit(What::Fault(hit.finish())));
+        self.after_drive(id);
+        if let Some((action, count)) = repeated {
+            self.emit(What::RepeatedCommand { drive: id, unit, action, count });
+        }
+    }
+
+    /// Every drive executes, none answers (serial line, 2.1).
+    fn broadcast(&mut self, link: LinkId, request: Pdu) {
+        let hit = self.on_request(link, Adu { unit: BROADCAST, pdu: &request }, BROADCAST);
+        let passage = hit.as_ref().map_or(Passage::Delivered, PendingHit::passage);
+        hit.into_iter().for_each(|hit| self.emit(What::Fault(hit.finish())));
+        if passage == Passage::Lost {
+            return;
+        }
+        if request.first() == Some(&READ) {
+            return self.emit(What::BroadcastRead { request });
+        }
+        for drive in self.stations.ids() {
+            if !self.stations.receives(drive, self.mode) {
+                continue;
+            }
+            let station = self.stations.drive_mut(drive);
+            let unit = station.unit();
+            let refusal = station.request(self.now, &request).err();
+            self.emit(What::Broadcast { drive, unit, request, refusal });
+            self.after_drive(drive);
+        }
+    }
+
+    /// Some drives answer a broken frame, if the address in it is theirs.
+    fn answer_bad_crc(&mut self, link: LinkId, frame: Frame, crc: BadCrc) {
+        let named = frame.first().and_then(|unit| self.stations.find(*unit));
+        let answered = named.and_then(|id| Some((id, self.drive(id).model().line.crc_error?)));
+        if let (Some((drive, code)), [unit, function, ..]) = (answered, &*frame) {
+            let exception = Exception { function: *function & 0x7F, code };
+            self.reply(link, drive, *unit, &Response::Exception(exception).encode(), None);
+        }
+        self.emit(What::BadCrc { frame, crc, answered });
+    }
+
+    fn on_request(&mut self, link: LinkId, adu: Adu<'_>, unit: u8) -> Option<PendingHit> {
+        let line = self.links.line(link)?;
+        let hit = self.medium.on_request(self.now, &MasterRequest { link, line, adu, unit });
+        self.place_transmits();
+        hit
+    }
+
+    /// Lets `drive` reply as `unit`. How much later than usual the master has an answer that it accepts, if ever.
+    fn reply(
+        &mut self,
+        link: LinkId,
+        drive: DriveId,
+        unit: u8,
+        pdu: &Pdu,
+        hit: Option<&mut PendingHit>,
+    ) -> Option<Duration> {
+        let line = self.links.line(link)?;
+        let paced = self.medium.paced_mode();
+        let begins = paced.map_or(self.now, |mode| {
+            let turnaround = self.stations.drive(drive).model().line.turnaround(mode);
+            self.now.max(line.received_at() + turnaround)
+        });
+        let reply = DriveReply { link, line, unit, pdu, begins };
+        let later = self.medium.on_reply(self.now, &reply, hit);
+        self.place_transmits();
+        later
+    }
+
+    /// Others on the line have their turn: our masters and our drives receive what they say.
+    fn let_others_speak(&mut self) {
+        let said = self.medium.on_chatter(self.now, self.links.lines(), self.stations.units());
+        let Some(frame) = said else { return };
+        let links: Vec<LinkId> = self.links.lines().map(|(link, _)| link).collect();
+        for link in links {
+            self.medium.overhear(self.now, link, &frame);
+            self.place_transmits();
+            self.links.receive(self.now, link, &frame);
+            self.listen(link, self.now);
+        }
+    }
+
+    fn place_transmits(&mut self) {
+        self.outputs.place_transmits(&self.medium);
     }
 
     fn emit(&mut self, what: What) {
-        self.outputs.push_back(Output::Event(Event { at: self.now, what }));
+        self.outputs.push(Output::Event(Event { at: self.now, what }));
     }
 
     /// Has what a drive has stored kept.
     fn keep(&mut self, id: DriveId) {
-        if self.drives[usize::from(id.0)].take_stored() {
-            self.outputs.push_back(Output::Keep(id));
+        if self.stations.drive_mut(id).take_stored() {
+            self.outputs.push(Output::Keep(id));
         }
     }
 
     /// Collects what a drive has to tell and when it wants to be woken.
     fn after_drive(&mut self, id: DriveId) {
         self.keep(id);
-        if self.drives[usize::from(id.0)].take_restart() {
+        if self.stations.drive_mut(id).take_restart() {
             self.switch(id, Drive::power_cycle);
         }
-        while let Some(timer) = self.drives[usize::from(id.0)].poll_woken() {
+        while let Some(timer) = self.stations.drive_mut(id).poll_woken() {
             self.wakes.note(Wake { at: self.now, reason: WakeReason::Drive(id, timer) });
         }
         let mut moved = false;
-        while let Some(change) = self.drives[usize::from(id.0)].poll_change() {
+        while let Some(change) = self.stations.drive_mut(id).poll_change() {
             moved |= matches!(
                 change,
                 Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn | Change::PoweredOff
             );
-            let unit = self.drives[usize::from(id.0)].unit();
+            let unit = self.stations.drive(id).unit();
             self.emit(What::Drive { drive: id, unit, change });
         }
         if moved {
             self.follow_drives();
-            self.readdress();
+            self.stations.readdress(self.mode);
         }
-        self.deadlines.set(id, self.drives[usize::from(id.0)].next_timer());
+        self.deadlines.set(id, self.stations.drive(id).next_timer());
     }
 
     /// Switches all stations of `id`'s device: they share their power.
     fn switch(&mut self, id: DriveId, power: impl Fn(&mut Drive, Instant)) {
-        let device = self.devices[usize::from(id.0)];
-        for i in 0..self.drives.len() {
-            if self.devices[i] == device {
-                power(&mut self.drives[i], self.now);
-                self.after_drive(DriveId(i as u16));
+        let device = self.stations.device(id);
+        for id in self.stations.ids() {
+            if self.stations.device(id) == device {
+                power(self.stations.drive_mut(id), self.now);
+                self.after_drive(id);
             }
         }
     }
@@ -368,45 +475,20 @@ impl Bus {
     /// Where all drives of a serial line agree on another mode, the line goes with them: a lone drive takes
     /// its port along.
     fn follow_drives(&mut self) {
-        let Some(line) = self.mode else { return };
-        let mut modes = self.drives.iter().map(Drive::mode);
-        let Some(Some(first)) = modes.next() else { return };
-        if first != line && modes.all(|mode| mode == Some(first)) {
-            self.mode = Some(first);
+        let agreed = self.stations.agreed_mode().filter(|_| self.mode.is_some());
+        if agreed.is_some() && agreed != self.mode {
+            self.mode = agreed;
             self.move_line();
         }
     }
 
     /// Moves the port after its drives, once what is on its way has left.
     fn move_line(&mut self) {
-        let Some(mode) = self.mode.filter(|_| self.spoken != self.mode) else { return };
-        if !self.is_under_way() {
-            self.spoken = self.mode;
+        let Some(mode) = self.mode.filter(|_| self.medium.mode() != self.mode) else { return };
+        if !self.medium.is_under_way() {
+            self.medium.set_mode(self.mode);
             self.emit(What::Moved(mode));
-            self.outputs.push_back(Output::Moved(mode));
+            self.outputs.push(Output::Moved(mode));
         }
-    }
-
-    /// Does the drive hear what is said on the line?
-    fn hears(&self, drive: &Drive) -> bool {
-        drive.is_powered() && (self.mode.is_none() || drive.mode() == self.mode)
-    }
-
-    /// Finds out again who answers to what. Of two drives with one address the first answers.
-    fn readdress(&mut self) {
-        self.units = Units::new();
-        self.by_unit = [None; 256];
-        for (i, drive) in self.drives.iter().enumerate().rev() {
-            if drive.unit() != BROADCAST && self.hears(drive) {
-                self.units.insert(drive.unit());
-                self.by_unit[usize::from(drive.unit())] = Some(DriveId(i as u16));
-            }
-        }
-    }
-}
-
-impl Default for Bus {
-    fn default() -> Self {
-        Self::new()
     }
 }

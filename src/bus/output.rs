@@ -2,17 +2,15 @@
 
 use crate::drive::Timer;
 use crate::event::{DriveId, Event};
+use crate::medium::{LinkId, Medium, MediumTimer};
 use crate::serial::Mode;
 use crate::time::Instant;
 use crate::wire::Frame;
+use std::collections::VecDeque;
 use std::fmt;
 
-/// A link onto a bus: the serial line, or one TCP client.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct LinkId(pub(super) u32);
-
 /// What leaves a bus.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Output {
     /// A drive has stored something: what it keeps over power-off has to be safe before anything that comes
     /// behind this leaves, or an answer confirms what a power failure takes back.
@@ -31,6 +29,45 @@ pub enum Output {
     Close(LinkId),
     /// Something happened.
     Event(Event),
+}
+
+/// What leaves a bus and was not polled yet, in order. Frames stay with the medium until then, and only have their
+/// places here.
+#[derive(Debug, Default)]
+pub(super) struct OutputQueue {
+    queue: VecDeque<PendingOutput>,
+    /// Frames of the medium that have their place.
+    placed: usize,
+}
+
+#[derive(Debug)]
+enum PendingOutput {
+    Transmit,
+    Other(Output),
+}
+
+impl OutputQueue {
+    pub fn push(&mut self, output: Output) {
+        self.queue.push_back(PendingOutput::Other(output));
+    }
+
+    /// Gives the frames that `medium` has let go their places behind what is there.
+    pub fn place_transmits(&mut self, medium: &Medium) {
+        while self.placed < medium.transmits() {
+            self.queue.push_back(PendingOutput::Transmit);
+            self.placed += 1;
+        }
+    }
+
+    pub fn poll(&mut self, medium: &mut Medium) -> Option<Output> {
+        match self.queue.pop_front()? {
+            PendingOutput::Other(output) => Some(output),
+            PendingOutput::Transmit => {
+                self.placed -= 1;
+                medium.poll_transmit().map(|(link, frame)| Output::Transmit { link, frame })
+            }
+        }
+    }
 }
 
 /// When a bus wants to be woken at the latest, and why.
@@ -71,6 +108,16 @@ impl fmt::Display for WakeReason {
             Self::Reply(link) => write!(f, "link {}: delayed reply", link.0),
             Self::Chatter => f.write_str("chatter"),
             Self::Drive(drive, timer) => write!(f, "drive {}: {timer}", drive.0),
+        }
+    }
+}
+
+impl From<MediumTimer> for WakeReason {
+    fn from(timer: MediumTimer) -> Self {
+        match timer {
+            MediumTimer::Through(link) => Self::Through(link),
+            MediumTimer::Reply(link) => Self::Reply(link),
+            MediumTimer::Chatter => Self::Chatter,
         }
     }
 }

@@ -1,7 +1,5 @@
-//! How much a drive has counts, for those who wait for that.
+//! How many requests a drive has executed, for those who wait for that.
 
-use super::Bus;
-use crate::event::DriveId;
 use crate::wire::function::{READ, WRITES};
 
 /// Requests that a drive got and answered, refused ones too.
@@ -20,20 +18,13 @@ impl RequestCounts {
     pub fn all(self) -> u64 {
         self.reads + self.writes + self.others
     }
-}
 
-impl Bus {
-    /// Requests that a drive has executed since the start.
-    pub fn request_counts(&self, id: DriveId) -> RequestCounts {
-        self.request_counts[usize::from(id.0)]
-    }
-
-    pub(super) fn count(&mut self, id: DriveId, function: u8) {
-        let counts = &mut self.request_counts[usize::from(id.0)];
+    /// One more, with `function`.
+    pub(super) fn count(&mut self, function: u8) {
         match function {
-            READ => counts.reads += 1,
-            code if WRITES.contains(&code) => counts.writes += 1,
-            _ => counts.others += 1,
+            READ => self.reads += 1,
+            code if WRITES.contains(&code) => self.writes += 1,
+            _ => self.others += 1,
         }
     }
 }

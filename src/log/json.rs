@@ -4,9 +4,7 @@ use super::rows::{self, Item};
 use super::{no_effect, text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{
-    Change, DeviceFault, Event, FaultEffect, Outcome, Replanned, Transaction, What,
-};
+use crate::event::{Change, DeviceFault, Event, Outcome, Replanned, Transaction, What};
 use crate::model::Row;
 use crate::vocabulary::{Named, Refusal};
 use crate::wire::hex::to_hex;
@@ -74,12 +72,7 @@ fn fields(what: &What, bus: &Bus) -> (&'static str, Value) {
             }),
         ),
         What::Lost(why) => ("stream_closed", json!({"why": why::header(*why)})),
-        What::Fault { rule, unit, effect, hit } => {
-            let (name, kind) = bus.faults().told(*rule);
-            let mut fields = json!({"rule": name, "kind": kind.name(), "unit": unit, "hit": hit});
-            merge(&mut fields, effect_fields(*effect));
-            ("fault", fields)
-        }
+        What::Fault(hit) => ("fault", json!(hit)),
         What::Step(id) => {
             let remark = bus.remark(*id);
             let outcome = match remark.outcome {
@@ -148,27 +141,6 @@ fn item_fields(drive: &Drive, item: Item) -> Value {
         Item::Unlisted(first, last) => {
             json!({"address": first, "words": last - first + 1, "mapped": false})
         }
-    }
-}
-
-/// What was drawn or chosen; the kind says the rest.
-fn effect_fields(effect: FaultEffect) -> Value {
-    match effect {
-        FaultEffect::BitsFlipped(bits) => json!({"bits": bits}),
-        FaultEffect::Truncated(bytes) | FaultEffect::Extra(bytes) | FaultEffect::Garbage(bytes) => {
-            json!({"bytes": bytes})
-        }
-        FaultEffect::Delayed(by) => json!({"ms": by.as_secs_f64() * 1000.0}),
-        FaultEffect::Split { at, gap } => json!({"at": at, "gap_ms": gap.as_millis() as u64}),
-        FaultEffect::WrongUnit(to) | FaultEffect::WrongFunction(to) => json!({"to": to}),
-        FaultEffect::Exception(code) => json!({"code": code}),
-        FaultEffect::RequestLost
-        | FaultEffect::ReplyLost
-        | FaultEffect::BadChecksum
-        | FaultEffect::Late
-        | FaultEffect::Duplicated
-        | FaultEffect::Busy
-        | FaultEffect::Echoed => json!({}),
     }
 }
 

@@ -3,9 +3,7 @@
 use super::{no_effect, rows, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{
-    Change, DeviceFault, Event, FaultEffect, Outcome, Replanned, Transaction, What,
-};
+use crate::event::{Change, DeviceFault, Event, Outcome, Replanned, Transaction, What};
 use crate::serial::Mode;
 use crate::text::one_line;
 use crate::vocabulary::{Named, Then};
@@ -73,10 +71,7 @@ fn what(what: &What, bus: &Bus) -> String {
             )
         }
         What::Lost(why) => format!("stream closed: {}", why::header(*why)),
-        What::Fault { rule, unit, effect, hit } => {
-            let (name, _) = bus.faults().told(*rule);
-            format!("fault {name}: {} (hit {hit})", effect_text(*unit, *effect))
-        }
+        What::Fault(hit) => hit.to_string(),
         What::Step(id) => {
             let remark = bus.remark(*id);
             match remark.outcome {
@@ -152,36 +147,6 @@ fn who_is_here(unit: u8, bus: &Bus) -> String {
     match units.as_slice() {
         [only] => format!("the only unit on this line is {only}"),
         _ => format!("the units on this line are {}", units.join(", ")),
-    }
-}
-
-fn effect_text(unit: u8, effect: FaultEffect) -> String {
-    let reply = format!("reply from unit {unit}");
-    match effect {
-        FaultEffect::RequestLost => format!("request to unit {unit} lost"),
-        FaultEffect::ReplyLost => format!("{reply} lost"),
-        FaultEffect::BadChecksum => format!("{reply} sent with a bad checksum"),
-        FaultEffect::BitsFlipped(bits) => format!("{} flipped in the {reply}", count(bits, "bit")),
-        FaultEffect::Truncated(bytes) => format!("{reply} truncated by {}", count(bytes, "byte")),
-        FaultEffect::Extra(bytes) => format!("{} appended to the {reply}", count(bytes, "byte")),
-        FaultEffect::Garbage(bytes) => {
-            format!("{} inserted before the {reply}", count(bytes, "byte"))
-        }
-        FaultEffect::Delayed(by) => {
-            format!("{reply} delayed by {} ms", by.as_secs_f64() * 1000.0)
-        }
-        FaultEffect::Late => format!("{reply} held until the next request"),
-        FaultEffect::Duplicated => format!("{reply} sent twice"),
-        FaultEffect::Split { gap, .. } => {
-            format!("{reply} split by a gap of {} ms", gap.as_millis())
-        }
-        FaultEffect::WrongUnit(other) => format!("{reply} sent as unit {other}"),
-        FaultEffect::WrongFunction(other) => format!("{reply} sent with function {other:02X}"),
-        FaultEffect::Exception(code) => {
-            format!("request to unit {unit} answered with exception {code:02X}, not executed")
-        }
-        FaultEffect::Busy => format!("request to unit {unit} answered as busy, not executed"),
-        FaultEffect::Echoed => format!("request to unit {unit} echoed"),
     }
 }
 
@@ -323,11 +288,6 @@ fn replanned(what: &Replanned) -> String {
         }
         Replanned::TimeLimit { time: None } => "homing time limit removed".into(),
     }
-}
-
-/// `1 bit`, `3 bits`.
-fn count(number: u8, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 fn on_off(on: bool) -> &'static str {

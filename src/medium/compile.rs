@@ -2,9 +2,10 @@
 //!
 //! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
 
-use super::raw::{RawFault, RawFaultRegister, RawFunctions, RawMillis};
-use super::{Act, FaultKind, FaultRule, LineBehaviour, When, spec};
-use crate::problem::{Path, Problem};
+use super::keys::{self, FaultKeys, KeyRefusal};
+use super::raw::{self, RawAct, RawFault, RawFaultRegister, RawFunctions};
+use super::{FaultEffect, FaultKind, FaultRule, LineBehaviour, When, spec};
+use crate::problem::{Path, Problem, suggest};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
 use crate::units::parse_integer;
@@ -57,21 +58,24 @@ pub fn compile(
     reader.refuse_idle_keys();
     let name = reader.name(taken);
     let when = reader.when();
-    let Some(specs) = raw.act.preset() else {
-        let rules = reader.act().map(|act| FaultRule { name, when, act }).into_iter().collect();
-        return FaultSet { rules, line_behaviour: LineBehaviour::default() };
+    let preset = match raw.act {
+        RawAct::Preset(preset) => preset,
+        RawAct::Kind(kind) => {
+            let effect = reader.effect(kind);
+            let rules = effect.map(|effect| FaultRule { name, when, effect }).into_iter().collect();
+            return FaultSet { rules, line_behaviour: LineBehaviour::default() };
+        }
     };
     let mut rules: Vec<FaultRule> = Vec::new();
-    for spec in specs {
+    for spec in preset.rules {
         let names: Vec<_> = rules.iter().map(|it| it.name.as_str()).collect();
         for rule in spec::parse(spec, site, &names).unwrap_or_default().rules {
-            let own = rule.when;
-            let when = When { chance: own.chance, ..when.clone() };
-            rules.push(FaultRule { name: rule.name, when, act: rule.act });
+            let when = When { chance: rule.when.chance, ..when.clone() };
+            rules.push(FaultRule { when, ..rule });
         }
     }
     rules.iter_mut().for_each(|rule| rule.name = format!("{name}.{}", rule.name));
-    FaultSet { rules, line_behaviour: raw.act.line_behaviour() }
+    FaultSet { rules, line_behaviour: preset.line_behaviour() }
 }
 
 struct FaultReader<'a> {
@@ -91,29 +95,31 @@ impl FaultReader<'_> {
     fn refuse_idle_keys(&mut self) {
         let raw = self.raw;
         let kind = raw.act;
-        let own = [
-            ("at", raw.at.is_some()),
-            ("bits", raw.bits.is_some()),
-            ("bytes", raw.bytes.is_some()),
-            ("code", raw.code.is_some()),
-            ("gap_ms", raw.gap_ms.is_some()),
-            ("ms", raw.ms.is_some()),
-            ("to", raw.to.is_some()),
-        ];
-        for (key, _) in own.iter().filter(|(key, given)| *given && !kind.keys().contains(key)) {
-            let with = FaultKind::ALL.iter().filter(|kind| kind.keys().contains(key));
-            let with: Vec<_> = with.map(|kind| kind.name()).collect();
-            let what = format!("`{key}` does not apply to `{}`", kind.name());
-            let advice = format!("it applies to {}", with.join(", "));
-            self.problems.push(Problem::key(self.path.key(key), what).advise(advice));
+        for key in raw.own.0.keys().filter(|key| !kind.has_key(key)) {
+            let has = |kind: &&FaultKind| kind.key(key).is_some();
+            let with: Vec<_> = FaultKind::ALL.iter().filter(has).map(|kind| kind.name).collect();
+            let path = self.path.key(key);
+            let problem = match with.is_empty() {
+                true => {
+                    let known = raw::keys();
+                    let advice = suggest::did_you_mean(key, known);
+                    Problem::key(path, "unknown key").advise_if(advice)
+                }
+                false => {
+                    let what = format!("`{key}` does not apply to `{}`", kind.name());
+                    Problem::key(path, what).advise(format!("it applies to {}", with.join(", ")))
+                }
+            };
+            self.problems.push(problem);
         }
+        let is_preset = matches!(kind, RawAct::Preset(_));
         let turns = [
             ("skip", raw.skip.is_some()),
             ("every", raw.every.is_some()),
             ("probability", raw.probability.is_some()),
             ("count", raw.count.is_some()),
         ];
-        for (key, _) in turns.iter().filter(|(_, given)| *given && kind.preset().is_some()) {
+        for (key, _) in turns.iter().filter(|(_, given)| *given && is_preset) {
             let what = format!("a preset does not take `{key}`");
             let problem = Problem::key(self.path.key(key), what);
             self.problems.push(problem.advise("list the rules of the preset instead"));
@@ -262,81 +268,26 @@ impl FaultReader<'_> {
         Some(end)
     }
 
-    fn act(&mut self) -> Option<Act> {
-        let raw = self.raw;
-        Some(match raw.act {
-            FaultKind::LoseRequest => Act::LoseRequest,
-            FaultKind::LoseReply => Act::LoseReply,
-            FaultKind::BadCrc => Act::BadCrc,
-            // The shortest reply has 24 bits that may be turned over, on TCP.
-            FaultKind::FlipBits => {
-                Act::FlipBits { bits: self.within("bits", raw.bits, 1..=16).unwrap_or(1) }
-            }
-            FaultKind::Truncate => Act::Truncate { bytes: self.bytes() },
-            FaultKind::Extra => Act::Extra { bytes: self.bytes() },
-            FaultKind::Garbage => Act::Garbage { bytes: self.bytes() },
-            FaultKind::Delay => self.delay()?,
-            FaultKind::Late => Act::Late,
-            FaultKind::Duplicate => Act::Duplicate,
-            FaultKind::Split => Act::Split {
-                at: self.within("at", raw.at, 1..=512),
-                gap_ms: self.within("gap_ms", raw.gap_ms, 1..=u32::MAX).unwrap_or(20),
-            },
-            FaultKind::WrongUnit => {
-                if let Some(to) = raw.to.filter(|to| raw.unit == Some(*to)) {
-                    self.refuse("to", format!("`to` must not be the addressed unit, {to}"), None);
+    /// What a rule of `kind` does, from the keys that the kind has of its own.
+    fn effect(&mut self, kind: &FaultKind) -> Option<FaultEffect> {
+        let mut keys = FaultKeys::of(self.raw.unit);
+        for key in kind.keys {
+            match self.raw.own.0.get(key.name) {
+                Some(value) => keys.put(key, value, &self.path.key(key.name), self.problems),
+                None if key.is_required => {
+                    let what = format!("`{}` needs `{}`", kind.name, key.name);
+                    self.refuse("do", what, None);
                 }
-                Act::WrongUnit { to: raw.to }
+                None => {}
             }
-            FaultKind::WrongFunction => {
-                Act::WrongFunction { to: self.within("to", raw.to, 1..=0x7F) }
-            }
-            FaultKind::Exception => {
-                self.needs("code", raw.code.is_some())?;
-                Act::Exception { code: self.within("code", raw.code, 1..=0xFF)? }
-            }
-            FaultKind::Busy => Act::Busy,
-            FaultKind::Echo => Act::Echo,
-            FaultKind::NoisyCable
-            | FaultKind::SleepyDrive
-            | FaultKind::UsbAdapter
-            | FaultKind::CrowdedLine => {
-                return None;
-            }
-        })
-    }
-
-    fn bytes(&mut self) -> u8 {
-        self.within("bytes", self.raw.bytes, 1..=0xFF).unwrap_or(1)
-    }
-
-    fn delay(&mut self) -> Option<Act> {
-        self.needs("ms", self.raw.ms.is_some())?;
-        let ends = match self.raw.ms.as_ref()? {
-            RawMillis::Fixed(ms) => Some((*ms, *ms)),
-            RawMillis::Range(text) => text.split_once('-').and_then(|(least, most)| {
-                Some((least.trim().parse().ok()?, most.trim().parse().ok()?))
-            }),
-        };
-        match ends {
-            Some((least_ms, most_ms)) if least_ms <= most_ms && most_ms > 0 => {
-                Some(Act::Delay { least_ms, most_ms })
-            }
-            _ => {
-                let what = "`ms` must be above 0, or a range such as 50-200";
-                self.refuse("ms", what, None);
+        }
+        match (kind.read)(&keys) {
+            Ok(effect) => Some(effect),
+            Err(KeyRefusal { key, what }) => {
+                self.refuse(key, what, None);
                 None
             }
         }
-    }
-
-    /// A key that its kind can't do without.
-    fn needs(&mut self, key: &str, given: bool) -> Option<()> {
-        if !given {
-            let what = format!("`{}` needs `{key}`", self.raw.act.name());
-            self.refuse("do", what, None);
-        }
-        given.then_some(())
     }
 
     /// The value of `key`, if it is given and one of `range`.
@@ -346,14 +297,6 @@ impl FaultReader<'_> {
         value: Option<T>,
         range: RangeInclusive<T>,
     ) -> Option<T> {
-        let value = value?;
-        if !range.contains(&value) {
-            let what = match value < *range.start() {
-                true => format!("`{key}` must be at least {}", range.start()),
-                false => format!("`{key}` must be at most {}", range.end()),
-            };
-            self.refuse(key, what, None);
-        }
-        Some(value)
+        keys::within(key, value?, range, &self.path.key(key), self.problems)
     }
 }

@@ -1,10 +1,18 @@
 //! A fault rule as it is written: the reference of the format, in bench files and on the command line.
 
-use super::FaultKind;
-use serde::Deserialize;
+use super::{FaultKind, LineBehaviour, Preset};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+use serde_yaml::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 #[cfg(feature = "cli")]
-use schemars::JsonSchema;
+use {
+    schemars::{JsonSchema, Schema, SchemaGenerator, json_schema},
+    serde_json::json,
+    std::borrow::Cow,
+};
 
 /// One rule. Of all rules of a line that hold for a request, the first acts.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -15,7 +23,7 @@ pub struct RawFault {
     pub name: Option<String>,
     /// What it does.
     #[serde(rename = "do")]
-    pub act: FaultKind,
+    pub act: RawAct,
     /// Only requests to this unit.
     pub unit: Option<u8>,
     /// Only requests with this function code, or with one of these.
@@ -26,30 +34,32 @@ pub struct RawFault {
     pub from: Option<f64>,
     /// Only before this second of emulated time.
     pub until: Option<f64>,
-    /// Let so many requests pass first.
+    /// Let this many requests pass first.
     pub skip: Option<u64>,
-    /// Then act on every so manieth: 2 is the 2nd, the 4th ...
+    /// Then act on every Nth: 2 is the 2nd, the 4th ...
     pub every: Option<u64>,
     /// Act with this probability, where it is a request's turn.
     pub probability: Option<f64>,
-    /// Act so many times and no more.
+    /// Act this many times and no more.
     pub count: Option<u64>,
-    /// `delay`: how long, in milliseconds; `50-200` draws it anew each time.
-    pub ms: Option<RawMillis>,
-    /// `exception`: its code.
-    pub code: Option<u8>,
-    /// `truncate`: how many bytes are cut off; one at least is left. `extra`, `garbage`: how many are
-    /// added. Default 1.
-    pub bytes: Option<u8>,
-    /// `flip_bits`: how many; default 1.
-    pub bits: Option<u8>,
-    /// `split`: bytes in the first piece; default half of them.
-    pub at: Option<u16>,
-    /// `split`: milliseconds between the pieces; default 20.
-    pub gap_ms: Option<u32>,
-    /// `wrong_unit`, `wrong_function`: the number that the reply names; default the next one.
-    pub to: Option<u8>,
+    /// The keys that its kind has of its own.
+    #[serde(flatten)]
+    pub own: OwnKeys,
 }
+
+/// What a rule does: a kind of fault, or a preset.
+#[derive(Debug, Clone, Copy)]
+pub enum RawAct {
+    /// A kind.
+    Kind(&'static FaultKind),
+    /// A preset.
+    Preset(&'static Preset),
+}
+
+/// The keys that a kind has of its own, as they are written.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub struct OwnKeys(pub BTreeMap<String, Value>);
 
 /// One function code, or several.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -76,35 +86,127 @@ pub enum RawFaultRegister {
     Name(String),
 }
 
-/// A time in milliseconds.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "expected milliseconds, or a range such as 50-200")]
-pub enum RawMillis {
-    /// Always the same.
-    Fixed(u32),
-    /// Drawn between two.
-    Range(String),
-}
-
-/// Every key of a rule, for advice on unknown ones.
-pub const KEYS: &[&str] = &[
-    "at",
-    "bits",
-    "bytes",
-    "code",
+/// The keys that a rule of any kind has.
+const COMMON_KEYS: &[&str] = &[
     "count",
     "do",
     "every",
     "from",
     "function",
-    "gap_ms",
-    "ms",
     "name",
     "probability",
     "register",
     "skip",
-    "to",
     "unit",
     "until",
 ];
+
+/// Every key of a rule, in order, for advice on unknown ones.
+pub fn keys() -> Vec<&'static str> {
+    let own = FaultKind::ALL.iter().flat_map(|kind| kind.keys).map(|key| key.name);
+    let keys: BTreeSet<_> = COMMON_KEYS.iter().copied().chain(own).collect();
+    keys.into_iter().collect()
+}
+
+/// What a rule can do, by name.
+static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let kinds = FaultKind::ALL.iter().map(|kind| kind.name);
+    kinds.chain(Preset::ALL.iter().map(|preset| preset.name)).collect()
+});
+
+impl RawAct {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kind(kind) => kind.name,
+            Self::Preset(preset) => preset.name,
+        }
+    }
+
+    /// Why it is impossible on Modbus TCP, if it is.
+    pub fn impossible_on_tcp(self) -> Option<&'static str> {
+        match self {
+            Self::Kind(kind) => kind.impossible_on_tcp,
+            Self::Preset(preset) => preset.impossible_on_tcp,
+        }
+    }
+
+    /// Does it also act on requests to unit 0, which have no reply?
+    pub fn takes_broadcasts(self) -> bool {
+        matches!(self, Self::Kind(kind) if kind.takes_broadcasts)
+    }
+
+    /// Has it a key of its own that is called `name`?
+    pub fn has_key(self, name: &str) -> bool {
+        matches!(self, Self::Kind(kind) if kind.key(name).is_some())
+    }
+
+    /// The line behaviour that it brings.
+    pub fn line_behaviour(self) -> LineBehaviour {
+        match self {
+            Self::Kind(_) => LineBehaviour::default(),
+            Self::Preset(preset) => preset.line_behaviour(),
+        }
+    }
+}
+
+impl PartialEq for RawAct {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl<'de> Deserialize<'de> for RawAct {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        let kind = FaultKind::find(&name).map(Self::Kind);
+        let act = kind.or_else(|| Preset::find(&name).map(Self::Preset));
+        act.ok_or_else(|| D::Error::unknown_variant(&name, &NAMES))
+    }
+}
+
+#[cfg(feature = "cli")]
+impl JsonSchema for RawAct {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "RawAct".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let kinds = FaultKind::ALL.iter().map(|kind| (kind.name, kind.about));
+        let presets = Preset::ALL.iter().map(|preset| (preset.name, preset.about));
+        let one = |(name, about)| json!({"const": name, "type": "string", "description": about});
+        let all: Vec<_> = kinds.chain(presets).map(one).collect();
+        json_schema!({"oneOf": all})
+    }
+}
+
+#[cfg(feature = "cli")]
+impl JsonSchema for OwnKeys {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "OwnKeys".into()
+    }
+
+    /// Every key of every kind. One that several kinds have accepts what any of them does.
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut properties = serde_json::Map::new();
+        for name in FaultKind::ALL.iter().flat_map(|kind| kind.keys).map(|key| key.name) {
+            let of = |kind: &'static FaultKind| Some((kind.name, kind.key(name)?));
+            let own: Vec<_> = FaultKind::ALL.iter().filter_map(of).collect();
+            let about: Vec<_> =
+                own.iter().map(|(kind, key)| format!("`{kind}`: {}.", key.about)).collect();
+            let mut forms: Vec<_> = own.iter().map(|(_, key)| key.form.schema()).collect();
+            forms.dedup();
+            let schema = json!({"description": about.join(" "), "anyOf": forms});
+            properties.insert(name.into(), schema);
+        }
+        json_schema!({"type": "object", "properties": properties})
+    }
+}

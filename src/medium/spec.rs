@@ -3,7 +3,7 @@
 //! A value is written as in YAML, so a list takes brackets: `lose_reply:function=[0x06,0x10]`. What is said
 //! here becomes the same tree as a map in a bench file and is checked by the same code.
 
-use super::raw::{KEYS, RawFault};
+use super::raw::{self, RawFault};
 use super::{FaultContext, FaultSet, compile};
 use crate::problem::{At, Mark, Path, Problem, Seg, section};
 use serde_yaml::{Mapping, Value};
@@ -23,7 +23,7 @@ pub fn parse(
     let cut = Cut::new(spec, &mut problems);
     let path = Path::root();
     let raw: Option<RawFault> =
-        section::read(&Value::Mapping(cut.tree), &path, KEYS, &mut problems);
+        section::read(&Value::Mapping(cut.tree), &path, &raw::keys(), &mut problems);
     let rules = raw.map(|raw| compile(&raw, &path, site, taken, &mut problems));
     match problems.is_empty() {
         true => Ok(rules.unwrap_or_default()),

@@ -20,35 +20,28 @@ fn a_repeated_command_as_json() {
 
 #[test]
 fn each_kind_as_json() {
-    for &kind in FaultKind::ALL {
-        let (spec, mut want) = match kind {
-            FaultKind::FlipBits => ("flip_bits:bits=2", json!({"bits": 2})),
-            FaultKind::Truncate => ("truncate:bytes=3", json!({"bytes": 3})),
-            FaultKind::Extra => ("extra:bytes=2", json!({"bytes": 2})),
-            FaultKind::Garbage => ("garbage", json!({"bytes": 1})),
-            FaultKind::Delay => ("delay:ms=200", json!({"ms": 200.0})),
-            FaultKind::Split => ("split:at=3,gap_ms=50", json!({"at": 3, "gap_ms": 50})),
-            FaultKind::WrongUnit => ("wrong_unit", json!({"to": 2})),
-            FaultKind::WrongFunction => ("wrong_function:to=6", json!({"to": 6})),
-            FaultKind::Exception => ("exception:code=4", json!({"code": 4})),
-            FaultKind::LoseRequest
-            | FaultKind::LoseReply
-            | FaultKind::BadCrc
-            | FaultKind::Late
-            | FaultKind::Duplicate
-            | FaultKind::Busy
-            | FaultKind::Echo => (kind.name(), json!({})),
-            FaultKind::NoisyCable
-            | FaultKind::SleepyDrive
-            | FaultKind::UsbAdapter
-            | FaultKind::CrowdedLine => continue,
+    for kind in FaultKind::ALL {
+        let (spec, mut want) = match kind.name {
+            "flip_bits" => ("flip_bits:bits=2", json!({"bits": 2})),
+            "truncate" => ("truncate:bytes=3", json!({"bytes": 3})),
+            "extra" => ("extra:bytes=2", json!({"bytes": 2})),
+            "garbage" => ("garbage", json!({"bytes": 1})),
+            "delay" => ("delay:ms=200", json!({"ms": 200.0})),
+            "split" => ("split:at=3,gap_ms=50", json!({"at": 3, "gap_ms": 50})),
+            "wrong_unit" => ("wrong_unit", json!({"to": 2})),
+            "wrong_function" => ("wrong_function:to=6", json!({"to": 6})),
+            "exception" => ("exception:code=4", json!({"code": 4})),
+            "lose_request" | "lose_reply" | "bad_crc" | "late" | "duplicate" | "busy" | "echo" => {
+                (kind.name, json!({}))
+            }
+            _ => panic!("nobody tests `{kind}`"),
         };
         let mut rig = drive(&[spec]);
         ask(&mut rig, READ);
         let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
         let told = told.filter(|it| it["event"] == "fault").collect::<Vec<Value>>();
         let [Value::Object(told)] = told.as_slice() else { panic!("{told:?}") };
-        let common = [("rule", json!(kind.name())), ("kind", json!(kind.name()))];
+        let common = [("rule", json!(kind.name)), ("kind", json!(kind.name))];
         let common = common.into_iter().chain([("unit", json!(1)), ("hit", json!(1))]);
         common.for_each(|(key, value)| want[key] = value);
         let own = |key: &String| !["t", "line", "event", "text"].contains(&key.as_str());

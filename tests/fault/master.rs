@@ -83,33 +83,30 @@ async fn a_stubborn_master_moves_twice_and_is_told_on() {
 
 #[tokio::test(start_paused = true)]
 async fn a_master_notices_each_kind() {
-    for &kind in FaultKind::ALL {
+    for kind in FaultKind::ALL {
         let busy = Seen::Exception(ExceptionCode::ServerDeviceBusy);
-        let (spec, want) = match kind {
-            FaultKind::LoseRequest => ("lose_request:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::LoseReply => ("lose_reply:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::BadCrc => ("bad_crc:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::FlipBits => ("flip_bits:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::Truncate => ("truncate:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::Extra => ("extra:count=1,bytes=9", [Seen::Value, Seen::Value]),
-            FaultKind::Garbage => ("garbage:count=1", [Seen::Value, Seen::Value]),
-            FaultKind::Delay => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
-            FaultKind::Late => ("late:count=1", [Seen::Silence, Seen::Value]),
-            FaultKind::Duplicate => ("duplicate:count=1", [Seen::Value, Seen::Value]),
-            FaultKind::Split => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
-            FaultKind::WrongUnit => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),
-            FaultKind::WrongFunction => ("wrong_function:count=1", [Seen::Bad, Seen::Value]),
-            FaultKind::Exception => {
+        let (spec, want) = match kind.name {
+            "lose_request" => ("lose_request:count=1", [Seen::Silence, Seen::Value]),
+            "lose_reply" => ("lose_reply:count=1", [Seen::Silence, Seen::Value]),
+            "bad_crc" => ("bad_crc:count=1", [Seen::Silence, Seen::Value]),
+            "flip_bits" => ("flip_bits:count=1", [Seen::Silence, Seen::Value]),
+            "truncate" => ("truncate:count=1", [Seen::Silence, Seen::Value]),
+            "extra" => ("extra:count=1,bytes=9", [Seen::Value, Seen::Value]),
+            "garbage" => ("garbage:count=1", [Seen::Value, Seen::Value]),
+            "delay" => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
+            "late" => ("late:count=1", [Seen::Silence, Seen::Value]),
+            "duplicate" => ("duplicate:count=1", [Seen::Value, Seen::Value]),
+            "split" => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
+            "wrong_unit" => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),
+            "wrong_function" => ("wrong_function:count=1", [Seen::Bad, Seen::Value]),
+            "exception" => {
                 let device = Seen::Exception(ExceptionCode::ServerDeviceFailure);
                 ("exception:code=4,count=1", [device, Seen::Value])
             }
-            FaultKind::Busy => ("busy:count=1", [busy, Seen::Value]),
+            "busy" => ("busy:count=1", [busy, Seen::Value]),
             // What is left over of the first spoils the second.
-            FaultKind::Echo => ("echo:count=1", [Seen::Bad, Seen::Bad]),
-            FaultKind::NoisyCable
-            | FaultKind::SleepyDrive
-            | FaultKind::UsbAdapter
-            | FaultKind::CrowdedLine => continue,
+            "echo" => ("echo:count=1", [Seen::Bad, Seen::Bad]),
+            _ => panic!("nobody tests `{kind}`"),
         };
         assert_eq!(two_looks(spec).await, want, "{spec}");
     }

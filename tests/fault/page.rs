@@ -5,8 +5,7 @@ use crate::documents::fenced;
 use crate::expect::{read, root};
 use crate::kit::{Files, bench_line, line_of, text_of};
 use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
-use drivemu::medium::FaultKind;
-use drivemu::medium::raw::KEYS;
+use drivemu::medium::{FaultKind, Preset, raw};
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 
@@ -22,10 +21,11 @@ fn table(title: &str) -> Vec<Vec<String>> {
 #[test]
 fn each_kind_does_what_the_page_says() {
     let rows = table("Kinds");
-    let kinds = FaultKind::ALL.iter().filter(|kind| kind.preset().is_none());
+    let kinds = FaultKind::ALL.iter();
     for (kind, row) in kinds.clone().zip(&rows) {
         let [name, _, keys, example, log] = row.as_slice() else { panic!("{row:?}") };
-        assert_eq!((name.as_str(), keys), (kind.name(), &kind.keys().join(" ")));
+        let own: Vec<_> = kind.keys.iter().map(|key| key.name).collect();
+        assert_eq!((name.as_str(), keys), (kind.name, &own.join(" ")));
         let mut rig = drive(&[example]);
         ask(&mut rig, READ);
         let said = rig.log();
@@ -47,24 +47,23 @@ fn each_key_has_an_example() {
         assert!(problems.is_empty(), "{}", render(&problems, "faults.md", example));
     }
     keys.sort_unstable();
-    assert_eq!(keys, KEYS);
+    assert_eq!(keys, raw::keys());
 }
 
 #[test]
 fn presets_have_the_numbers_of_the_page() {
     let page = read(&root("docs/faults.md"));
-    for kind in FaultKind::ALL {
-        let Some(specs) = kind.preset() else { continue };
-        let intro = format!("\n`{}`, ", kind.name());
+    for preset in Preset::ALL {
+        let intro = format!("\n`{}`, ", preset.name);
         let (_, rest) = page.split_once(&intro).expect("a preset of the page");
         let items = rest.lines().skip(2).map_while(|line| line.strip_prefix("- "));
         let items = items.map(|it| it.replace('`', ""));
         let (line_behaviour, rules): (Vec<_>, Vec<_>) = items.partition(|it| it.contains(": "));
-        assert_eq!(rules, specs);
+        assert_eq!(rules, preset.rules);
         let line = format!("pty: auto, drives: [{{model: hcfa-x}}], {}", line_behaviour.join(", "));
         assert_eq!(
             bench_line(&format!("lines: [{{{line}}}]")).line_behaviour,
-            kind.line_behaviour()
+            preset.line_behaviour()
         );
     }
 }
@@ -80,7 +79,7 @@ fn examples_work() {
     let bench = bench.unwrap_or_else(|problems| panic!("{}", problems[0]));
     assert_eq!(
         bench.lines[0].faults.len(),
-        3 + FaultKind::NoisyCable.preset().map_or(0, <[_]>::len)
+        3 + Preset::find("noisy_cable").map_or(0, |it| it.rules.len())
     );
     let consoles = fenced(&page, "console");
     let line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());

@@ -61,31 +61,18 @@ fn an_order_that_was_lost_itself_does_not() {
     assert_eq!((moves(&rig), repeated(&rig)), (1, 0));
 }
 
-/// A kind that is not held against here does not compile.
+/// A kind that is not held against here fails.
 #[test]
 fn each_kind_lets_the_answer_arrive_or_not() {
-    for &kind in FaultKind::ALL {
-        let (spec, want) = match kind {
-            FaultKind::Delay => ("delay:ms=6000", 1),
-            FaultKind::Split => ("split:gap_ms=6000", 1),
-            FaultKind::LoseReply
-            | FaultKind::BadCrc
-            | FaultKind::FlipBits
-            | FaultKind::Truncate
-            | FaultKind::Late
-            | FaultKind::WrongUnit
-            | FaultKind::WrongFunction => (kind.name(), 1),
-            FaultKind::Exception => ("exception:code=4", 0),
-            FaultKind::LoseRequest
-            | FaultKind::Extra
-            | FaultKind::Garbage
-            | FaultKind::Duplicate
-            | FaultKind::Busy
-            | FaultKind::Echo => (kind.name(), 0),
-            FaultKind::NoisyCable
-            | FaultKind::SleepyDrive
-            | FaultKind::UsbAdapter
-            | FaultKind::CrowdedLine => continue,
+    for kind in FaultKind::ALL {
+        let (spec, want) = match kind.name {
+            "delay" => ("delay:ms=6000", 1),
+            "split" => ("split:gap_ms=6000", 1),
+            "lose_reply" | "bad_crc" | "flip_bits" | "truncate" | "late" | "wrong_unit"
+            | "wrong_function" => (kind.name, 1),
+            "exception" => ("exception:code=4", 0),
+            "lose_request" | "extra" | "garbage" | "duplicate" | "busy" | "echo" => (kind.name, 0),
+            _ => panic!("nobody tests `{kind}`"),
         };
         let mut rig = stepper(&[spec]);
         twice(&mut rig, MOVE);

@@ -3,8 +3,8 @@
 use super::{READ, ask, drive_of, effects};
 use crate::properties::traffic::{Piece, pieces};
 use drivemu::bus::WakeReason;
-use drivemu::event::{FaultEffect, What};
-use drivemu::medium::FaultKind;
+use drivemu::event::What;
+use drivemu::medium::{FaultEffect, FaultKind, Preset};
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use proptest::prelude::*;
@@ -21,10 +21,8 @@ fn run(specs: &[&str], seed: u64, n: usize) -> (Rig, Vec<u8>) {
 
 /// Which rule acted, each time that one did.
 fn acted(rig: &Rig, name: &str) -> Vec<(u64, FaultEffect)> {
-    let told = |event: &drivemu::event::Event| match event.what {
-        What::Fault { rule, effect, .. } if rig.bus().faults().told(rule).0 == name => {
-            Some((event.at.as_nanos(), effect))
-        }
+    let told = |event: &drivemu::event::Event| match &event.what {
+        What::Fault(hit) if *hit.rule == *name => Some((event.at.as_nanos(), hit.effect)),
         _ => None,
     };
     rig.events().iter().filter_map(told).collect()
@@ -87,13 +85,13 @@ proptest! {
     /// No traffic brings it down under any faults, what is held leaves, and the seed says it all.
     #[test]
     fn any_traffic_in_any_weather(seed: u64, traffic in pieces(1..40)) {
-        let spec = |kind: &FaultKind| match kind {
-            FaultKind::Delay => "delay:ms=0-40,probability=0.1".to_owned(),
-            FaultKind::Exception => "exception:code=4,probability=0.1".to_owned(),
-            kind if kind.preset().is_some() => kind.name().to_owned(),
-            kind => format!("{}:probability=0.1", kind.name()),
+        let spec = |kind: &FaultKind| match kind.name {
+            "delay" => "delay:ms=0-40,probability=0.1".to_owned(),
+            "exception" => "exception:code=4,probability=0.1".to_owned(),
+            name => format!("{name}:probability=0.1"),
         };
-        let specs: Vec<_> = FaultKind::ALL.iter().map(spec).collect();
+        let presets = Preset::ALL.iter().map(|preset| preset.name.to_owned());
+        let specs: Vec<_> = FaultKind::ALL.iter().map(spec).chain(presets).collect();
         let specs: Vec<&str> = specs.iter().map(String::as_str).collect();
         let run = || {
             let mut rig = drive_of("yako-closed-loop", &specs, seed);

@@ -1,7 +1,7 @@
 //! No inert key: each line behaviour that a bench file can say changes what comes over the wire. Presets bring theirs.
 
 use super::{ANSWER, Bench, MS, READ, frame, line};
-use drivemu::medium::{FaultKind, LineBehaviour};
+use drivemu::medium::{LineBehaviour, Preset};
 
 /// Everything that leaves in a while with two requests in it.
 #[cfg(feature = "cli")]
@@ -45,13 +45,12 @@ fn each_key_changes_what_passes() {
 
 #[test]
 fn presets_bring_habits() {
-    for kind in FaultKind::ALL.iter().filter(|kind| !kind.line_behaviour().is_empty()) {
-        let preset = line(&format!(
-            "pty: auto, faults: [{{do: {}}}], drives: [{{model: hcfa-x}}]",
-            kind.name()
-        ));
-        assert_eq!(preset.line_behaviour, kind.line_behaviour());
-        assert_eq!(preset.faults.len(), kind.preset().map_or(0, <[_]>::len));
+    for preset in Preset::ALL.iter().filter(|preset| !preset.line_behaviour().is_empty()) {
+        let name = preset.name;
+        let line =
+            line(&format!("pty: auto, faults: [{{do: {name}}}], drives: [{{model: hcfa-x}}]"));
+        assert_eq!(line.line_behaviour, preset.line_behaviour());
+        assert_eq!(line.faults.len(), preset.rules.len());
     }
     let both = "echo: true, faults: [{do: usb_adapter}, {do: crowded_line}]";
     let both = Bench::servo(both);

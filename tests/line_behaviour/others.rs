@@ -31,8 +31,8 @@ fn unit(bytes: &[u8]) -> Option<u8> {
 fn heard(bench: &Bench) -> [usize; 3] {
     let mut heard = [0; 3];
     for event in &bench.events {
-        match event.what {
-            What::Foreign { answer, .. } => heard[usize::from(answer)] += 1,
+        match &event.what {
+            What::Foreign { answer, .. } => heard[usize::from(*answer)] += 1,
             What::Noise { .. } => heard[2] += 1,
             other => panic!("{other:?}"),
         }

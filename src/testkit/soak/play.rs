@@ -145,9 +145,9 @@ impl<'a> SoakPlayer<'a> {
             let first = self.played.events.len();
             self.ask(unit, &read, FrameDamage::Whole)?;
             self.fall_silent()?;
-            let heard = |event: &Event| match event.what {
+            let heard = |event: &Event| match &event.what {
                 What::Transaction(it) => it.unit == unit && it.request[..] == read,
-                What::Fault { unit: hit_by, .. } => hit_by == unit,
+                What::Fault(hit) => hit.unit == unit,
                 _ => false,
             };
             if !self.played.events[first..].iter().any(heard) {
@@ -243,8 +243,8 @@ impl<'a> SoakPlayer<'a> {
                     seen.push(SoakEvent::Frame(frame));
                 }
                 Output::Event(event) => {
+                    seen.push(SoakEvent::Told(event.what.clone()));
                     self.played.events.push(event);
-                    seen.push(SoakEvent::Told(event.what));
                 }
                 Output::Moved(mode) => {
                     self.wire.mode = mode;

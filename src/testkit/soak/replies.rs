@@ -1,8 +1,9 @@
 //! Holds what leaves a line against what its drives say that they did: one answer a request, from the unit that
 //! was asked, and nothing else, but for what a fault rule says that it did.
 
-use crate::event::{DriveId, FaultEffect, Transaction, What};
-use crate::wire::{Coding, Exception, Frame, Response, ascii, mbap, rtu};
+use crate::event::{DriveId, Transaction, What};
+use crate::medium::{FaultHit, Leaves, LeavingReply, Passage};
+use crate::wire::{BROADCAST, Coding, Exception, Frame, Response, ascii, mbap, rtu};
 
 /// Frames that have to come yet.
 #[derive(Debug, Default)]
@@ -11,7 +12,7 @@ pub struct Replies {
 }
 
 /// The outputs of one call, in order, as far as they count here.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum SoakEvent {
     /// A frame left.
     Frame(Frame),
@@ -45,28 +46,26 @@ impl Replies {
                 }
                 SoakEvent::Told(what) => what,
             };
-            let hit_by = match (what, rest.peek()) {
-                (What::Transaction(_), Some(SoakEvent::Told(What::Fault { effect, .. }))) => {
-                    Some(*effect)
-                }
+            let hit = match (what, rest.peek()) {
+                (What::Transaction(_), Some(SoakEvent::Told(What::Fault(hit)))) => Some(hit),
                 _ => None,
             };
             // That one is about the second of two requests, which no drive saw.
-            let hit_by = hit_by.filter(|it| !context.pending || !it.spares_the_drive());
+            let hit =
+                hit.filter(|it| !context.pending || it.effect.passage() == Passage::Delivered);
             match what {
                 What::Transaction(it) => {
                     addressed(it, context)?;
-                    rest.next_if(|_| hit_by.is_some());
-                    self.answered(it, hit_by, &mut frames, context.coding)?;
+                    rest.next_if(|_| hit.is_some());
+                    let leaves = hit.map_or(Leaves::INTACT, |hit| hit.effect.leaves());
+                    self.answered(it, leaves, &mut frames, context.coding)?;
                 }
-                What::Fault { unit, effect, .. } => {
-                    self.hit_by(*unit, *effect, &mut frames, context.coding)?;
-                }
+                What::Fault(hit) => self.spared(hit, &mut frames, context.coding)?,
                 What::BadCrc { frame, answered: Some((_, code)), .. } => {
                     let function = frame.get(1).map_or(0, |it| it & 0x7F);
                     let want = exception(function, *code);
-                    let [got] = self.own(&mut frames)?;
-                    same(&got, &framed(context.coding, frame[0], &want))?;
+                    let got = self.own(1, &mut frames)?;
+                    same(&got[0], &framed(context.coding, frame[0], &want))?;
                 }
                 _ => {}
             }
@@ -78,95 +77,82 @@ impl Replies {
     fn answered(
         &mut self,
         it: &Transaction,
-        hit_by: Option<FaultEffect>,
+        leaves: Leaves,
         frames: &mut Vec<Frame>,
         coding: Coding,
     ) -> Result<(), String> {
         let whole = framed(coding, it.unit, &it.answer);
-        let exact = |got: &Frame| same(got, &whole);
-        match hit_by {
-            None => exact(&self.own::<1>(frames)?[0]),
-            Some(FaultEffect::ReplyLost) => self.own::<0>(frames).map(drop),
-            Some(
-                FaultEffect::BadChecksum | FaultEffect::BitsFlipped(_) | FaultEffect::Truncated(_),
-            ) => {
-                let [got] = self.own(frames)?;
-                match got[..] == whole[..] {
-                    true => Err("a damaged reply is as good as new".into()),
-                    false => Ok(()),
-                }
+        let Leaves { before, reply, after } = leaves;
+        let is_there = !matches!(reply, LeavingReply::Later | LeavingReply::Nothing);
+        let own = self.own(before + usize::from(is_there) + after, frames)?;
+        let left = own.get(before);
+        match (reply, left) {
+            (LeavingReply::Intact, Some(left)) => same(left, &whole),
+            (LeavingReply::Changed, Some(left)) if left[..] != whole[..] => Ok(()),
+            (LeavingReply::Changed, _) => Err("a damaged reply is as good as new".into()),
+            (LeavingReply::Beginning, Some(left)) => {
+                let (head, tail) = whole.split_at(left.len().min(whole.len()));
+                self.held.push(tail.to_vec());
+                same(left, head)
             }
-            Some(FaultEffect::Extra(_) | FaultEffect::Duplicated) => {
-                let [first, second] = self.own(frames)?;
-                exact(&first)?;
-                if hit_by == Some(FaultEffect::Duplicated) { exact(&second) } else { Ok(()) }
-            }
-            Some(FaultEffect::Garbage(_) | FaultEffect::Echoed) => {
-                exact(&self.own::<2>(frames)?[1])
-            }
-            Some(FaultEffect::Delayed(_) | FaultEffect::Late) => {
-                self.own::<0>(frames)?;
+            (LeavingReply::Later, _) => {
                 self.held.push(whole.to_vec());
                 Ok(())
             }
-            Some(FaultEffect::Split { .. }) => {
-                let [first] = self.own(frames)?;
-                let (head, tail) = whole.split_at(first.len());
-                self.held.push(tail.to_vec());
-                same(&first, head)
-            }
-            Some(FaultEffect::WrongUnit(unit)) => {
-                same(&self.own::<1>(frames)?[0], &framed(coding, unit, &it.answer))
-            }
-            Some(FaultEffect::WrongFunction(function)) => {
-                let mut answer = it.answer;
-                answer[0] = function | answer[0] & 0x80;
-                same(&self.own::<1>(frames)?[0], &framed(coding, it.unit, &answer))
-            }
-            Some(FaultEffect::RequestLost | FaultEffect::Exception(_) | FaultEffect::Busy) => {
-                Err("a drive has executed what it never saw".into())
+            (LeavingReply::Nothing, _) => Ok(()),
+            (LeavingReply::Intact | LeavingReply::Beginning, None) => {
+                Err("a reply is missing".into())
             }
         }
     }
 
     /// A rule has acted, and no drive was asked, or all were.
-    fn hit_by(
+    fn spared(
         &mut self,
-        unit: u8,
-        effect: FaultEffect,
+        hit: &FaultHit,
         frames: &mut Vec<Frame>,
         coding: Coding,
     ) -> Result<(), String> {
-        let code = match effect {
-            FaultEffect::RequestLost => return self.own::<0>(frames).map(drop),
-            FaultEffect::Echoed => return self.own::<1>(frames).map(drop),
-            FaultEffect::Exception(code) => code,
-            FaultEffect::Busy => 6,
-            _ => return Err(format!("{effect:?} of an answer that never left")),
-        };
-        let [got] = self.own(frames)?;
-        let exception = exception(function(&got, coding) & 0x7F, code);
-        same(&got, &framed(coding, unit, &exception))
+        match hit.effect.passage() {
+            Passage::Lost => self.own(0, frames).map(drop),
+            Passage::Answered(code) => {
+                let got = self.own(1, frames)?[0];
+                let exception = exception(function(&got, coding) & 0x7F, code);
+                same(&got, &framed(coding, hit.unit, &exception))
+            }
+            Passage::Delivered if hit.unit == BROADCAST => {
+                self.own(hit.effect.leaves().before, frames).map(drop)
+            }
+            Passage::Delivered => Err(format!("{hit}, but nobody gave an answer")),
+        }
     }
 
-    /// The last `N` frames; those before were held back until now.
-    fn own<const N: usize>(&mut self, frames: &mut Vec<Frame>) -> Result<[Frame; N], String> {
-        let Some(first) = frames.len().checked_sub(N) else {
-            return Err(format!("{} frames left where {N} belong to a request", frames.len()));
+    /// The `count` frames that belong to a request. Those around them were held back until now.
+    fn own(&mut self, count: usize, frames: &mut Vec<Frame>) -> Result<Vec<Frame>, String> {
+        let Some(last) = frames.len().checked_sub(count) else {
+            return Err(format!("{} frames left where {count} belong to a request", frames.len()));
         };
-        let own = frames.split_off(first);
-        self.come(frames)?;
-        frames.clear();
-        Ok(std::array::from_fn(|i| own[i]))
+        let mut result = Ok(Vec::new());
+        for first in (0..=last).rev() {
+            let mut others = frames.clone();
+            let own = others.drain(first..first + count).collect();
+            result = self.come(&others).map(|()| own);
+            if result.is_ok() {
+                frames.clear();
+                break;
+            }
+        }
+        result
     }
 
     /// All of `frames` were held back until now.
     fn come(&mut self, frames: &[Frame]) -> Result<(), String> {
+        let mut held = self.held.clone();
         for frame in frames {
-            let held = self.held.iter().position(|it| it[..] == frame[..]);
-            let held = held.ok_or_else(|| format!("nobody asked for {frame:?}"))?;
-            self.held.remove(held);
+            let place = held.iter().position(|it| it[..] == frame[..]);
+            held.remove(place.ok_or_else(|| format!("nobody asked for {frame:?}"))?);
         }
+        self.held = held;
         Ok(())
     }
 }
@@ -215,12 +201,5 @@ fn same(got: &[u8], want: &[u8]) -> Result<(), String> {
     match got == want {
         true => Ok(()),
         false => Err(format!("{} left where {} belongs", hex(got), hex(want))),
-    }
-}
-
-impl FaultEffect {
-    /// Did no drive see the request?
-    fn spares_the_drive(self) -> bool {
-        matches!(self, Self::RequestLost | Self::Exception(_) | Self::Busy)
     }
 }

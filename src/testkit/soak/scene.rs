@@ -4,7 +4,6 @@ use super::draw::Draws;
 use crate::bench::{BenchLine, Device, DeviceSpec, LineBuilder, PortSpec, WireSpec};
 use crate::bus::Bus;
 use crate::line::Framing;
-use crate::medium::LineBehaviour;
 use crate::model::Model;
 use crate::motion::{Index, Machine, Zone};
 use crate::serial::Mode;

@@ -7,7 +7,7 @@ use super::routine::{RoutineAxis, routine};
 use super::scene::Scene;
 use crate::bus::{Command, DriveOrder};
 use crate::event::DriveId;
-use crate::medium::FaultKind;
+use crate::medium::{FaultKind, KeyForm};
 use crate::time::Duration;
 use crate::vocabulary::{AlarmCause, Named};
 use std::fmt;
@@ -117,22 +117,18 @@ fn rule(n: u64) -> String {
 }
 
 fn fault(scene: &Scene, n: usize, draws: &mut Draws) -> SoakStep {
-    let possible = |kind: &FaultKind| {
-        kind.preset().is_none() && !(scene.is_tcp() && kind.impossible_on_tcp().is_some())
-    };
-    let kinds: Vec<_> = FaultKind::ALL.iter().copied().filter(possible).collect();
+    let possible = |kind: &&FaultKind| !(scene.is_tcp() && kind.impossible_on_tcp.is_some());
+    let kinds: Vec<_> = FaultKind::ALL.iter().filter(possible).collect();
     let kind = *draws.pick(&kinds).expect("most are possible");
-    let mut spec = format!("{}:name={}", kind.name(), rule(n as u64));
-    for key in kind.keys() {
-        let value = match *key {
-            "ms" => format!("{}-{}", draws.between(1, 20), draws.between(20, 900)),
-            "code" => draws.between(1, 0xFF).to_string(),
-            "to" => draws.between(1, 0x7F).to_string(),
-            // The number of the transaction stays whole.
-            "at" => draws.between(2, 6).to_string(),
-            _ => draws.between(1, 12).to_string(),
+    let mut spec = format!("{kind}:name={}", rule(n as u64));
+    for key in kind.keys {
+        let value = match key.form {
+            KeyForm::Milliseconds => {
+                format!("{}-{}", draws.between(1, 20), draws.between(20, 900))
+            }
+            KeyForm::Number(least, most) => draws.between(least.max(1), most.min(12)).to_string(),
         };
-        spec += &format!(",{key}={value}");
+        spec += &format!(",{}={value}", key.name);
     }
     spec += &match draws.between(0, 3) {
         0 => format!(",every={}", draws.between(1, 4)),

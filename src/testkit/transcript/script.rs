@@ -1,7 +1,7 @@
 //! The text of a transcript, line by line, as steps.
 
 use super::TranscriptFailure;
-use crate::bench::raw::{KEYS, RawMachine};
+use crate::bench::raw::{self, RawMachine};
 use crate::problem::{Path, Problem, section};
 use crate::serial::Settings;
 use crate::testkit::hex;
@@ -180,7 +180,7 @@ impl Script {
 fn machine(text: &str) -> Result<RawMachine, String> {
     let value = serde_yaml::from_str(text).map_err(|error| error.to_string())?;
     let mut problems = Vec::new();
-    let machine = section::read(&value, &Path::root(), KEYS, &mut problems);
+    let machine = section::read(&value, &Path::root(), &raw::keys(), &mut problems);
     match (machine, problems.first()) {
         (Some(machine), None) => Ok(machine),
         (_, problem) => Err(problem.map(Problem::to_string).unwrap_or_default()),

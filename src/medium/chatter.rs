@@ -1,11 +1,10 @@
-//! ChatterState on the line: another master asks its units, in the gaps between our transactions.
+//! The traffic of others on a line: another master asks its units, in the gaps between our transactions.
 //!
 //! What they say is whole at the instant of its last character, for our master and for our drives. They
 //! speak only when the line has been silent; when our master speaks, the unit that was to answer them does not.
 
-use super::{Bus, Link, LinkId};
+use super::Chatter;
 use crate::line::{Line, Units};
-use crate::medium::Chatter;
 use crate::rng::{Chance, Fork, Rng};
 use crate::serial::Settings;
 use crate::time::{Duration, Instant};
@@ -21,13 +20,10 @@ const NOISE: f64 = 0.05;
 /// How many requests nobody answers.
 const NO_ANSWER: f64 = 0.1;
 
-/// No rule of faults can have this name, so that none draws the same.
-const STREAM: &str = "(chatter)";
-
 /// Another master and its units.
 #[derive(Debug)]
-pub struct ChatterState {
-    line_behaviour: Chatter,
+pub(super) struct ChatterState {
+    chatter: Chatter,
     fork: Fork,
     /// Conversations that were drawn.
     count: u64,
@@ -44,17 +40,29 @@ pub struct ChatterState {
 }
 
 impl ChatterState {
-    fn new(line_behaviour: Chatter, fork: Fork, now: Instant) -> Self {
+    pub(super) fn new(chatter: Chatter, fork: Fork, now: Instant) -> Self {
         let (count, rng, answer, spoke) = (0, fork.stream(0), None, false);
-        let mut others =
-            Self { line_behaviour, fork, count, rng, turn: now, at: now, answer, spoke };
+        let mut others = Self { chatter, fork, count, rng, turn: now, at: now, answer, spoke };
         others.pause(now);
         others
     }
 
     /// When they speak next.
-    pub fn at(&self) -> Instant {
+    pub(super) fn at(&self) -> Instant {
         self.at
+    }
+
+    /// Is `line`, on which our last reply ends at `free`, silent for as long as they need for what they say next?
+    pub(super) fn fits(
+        &self,
+        now: Instant,
+        line: &Line,
+        settings: Settings,
+        free: Instant,
+    ) -> bool {
+        let characters = settings.characters(self.next_len(line) as f64);
+        let begins = now - (settings.silence(SILENCE) + characters);
+        line.deadline().is_none() && line.received_at().max(free) <= begins
     }
 
     /// Characters of what they say next on a line like `line`. Of their requests one is as long as the other.
@@ -67,19 +75,19 @@ impl ChatterState {
         self.answer = None;
         self.rng = self.fork.stream(self.count);
         self.count += 1;
-        let every = self.line_behaviour.every.as_micros() as u64;
+        let every = self.chatter.every.as_micros() as u64;
         let pause = Duration::from_micros(self.rng.between(every / 2, every + every / 2));
         self.at = now.max(self.turn + pause);
     }
 
     /// A conversation that could begin now does not.
-    fn pass(&mut self, now: Instant) {
+    pub(super) fn skip_turn(&mut self, now: Instant) {
         self.turn = now;
         self.pause(now);
     }
 
-    /// Our master speaks. Did they speak last?
-    fn fall_silent(&mut self, now: Instant) -> bool {
+    /// A master of ours speaks, so they don't. Did they speak last?
+    pub(super) fn interrupt(&mut self, now: Instant) -> bool {
         if self.answer.is_some() {
             self.pause(now);
         }
@@ -87,7 +95,7 @@ impl ChatterState {
     }
 
     /// What they say at `now` on a line like `line`, where `ours` are not to be asked.
-    fn speak(
+    pub(super) fn speak(
         &mut self,
         now: Instant,
         line: &Line,
@@ -100,15 +108,14 @@ impl ChatterState {
             return Some(answer);
         }
         self.turn = now;
-        let Self { rng, line_behaviour, .. } = self;
+        let Self { rng, chatter, .. } = self;
         if rng.happens(Chance::new(NOISE)) {
             let noise = noise(rng);
             self.pause(now);
             self.spoke = true;
             return Some(noise);
         }
-        let unit =
-            line_behaviour.units[rng.between(0, line_behaviour.units.len() as u64 - 1) as usize];
+        let unit = chatter.units[rng.between(0, chatter.units.len() as u64 - 1) as usize];
         let is_answered = !rng.happens(Chance::new(NO_ANSWER));
         let (request, answer) = conversation(rng);
         if ours.has(unit) {
@@ -150,53 +157,4 @@ fn noise(rng: &mut Rng) -> Frame {
     let mut noise = Frame::new();
     (0..rng.between(1, 3)).for_each(|_| noise.push(rng.between(0, 0xFF) as u8));
     noise
-}
-
-impl Bus {
-    /// Other masters talk on the line from now on, if that is one of its line behaviour.
-    pub(super) fn invite_others(&mut self) {
-        let fork = self.faults.fork(STREAM);
-        let others = self
-            .line_behaviour
-            .chatter
-            .clone()
-            .map(|line_behaviour| ChatterState::new(line_behaviour, fork, self.now));
-        self.chatter = others;
-    }
-
-    /// It is the others' turn. Where the line is not silent they wait for another.
-    pub(super) fn let_others_speak(&mut self) {
-        let (Some(others), Some(mode)) = (&mut self.chatter, self.spoken) else { return };
-        let (now, settings) = (self.now, mode.settings);
-        let silent = |it: &Link| {
-            let characters = settings.characters(others.next_len(&it.line) as f64);
-            let begins = now - (settings.silence(SILENCE) + characters);
-            it.line.deadline().is_none() && it.line.received_at().max(it.free) <= begins
-        };
-        let quiet = self.links.values().all(silent) && self.queue.timed.first().is_none();
-        let said = match self.links.values().next() {
-            Some(link) if quiet => others.speak(now, &link.line, settings, &self.units),
-            _ => {
-                others.pass(now);
-                None
-            }
-        };
-        let Some(frame) = said else { return };
-        let links: Vec<LinkId> = self.links.keys().copied().collect();
-        for link in links {
-            self.pass(link, &frame);
-            self.links.get_mut(&link).into_iter().for_each(|it| it.line.receive(now, &frame));
-            self.listen(link, now);
-        }
-    }
-
-    /// One of our masters speaks. It has waited for silence, so what others said before has ended on all links.
-    pub(super) fn interrupt_chatter(&mut self) {
-        if !self.chatter.as_mut().is_some_and(|others| others.fall_silent(self.now)) {
-            return;
-        }
-        let silence = |(id, link): (&LinkId, &Link)| Some((*id, link.line.deadline()?));
-        let open: Vec<_> = self.links.iter().filter_map(silence).collect();
-        open.into_iter().for_each(|(link, silence)| self.listen(link, silence));
-    }
 }

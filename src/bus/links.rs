@@ -1,0 +1,134 @@
+//! The links of a line: how each tells frames apart, and what it has received.
+
+use super::stations::Stations;
+use crate::event::What;
+use crate::line::{Foreign, Framing, Line, LineEvent};
+use crate::medium::LinkId;
+use crate::time::Instant;
+use crate::wire::function::EXCEPTION;
+use crate::wire::rtu::BadCrc;
+use crate::wire::{Adu, BROADCAST, Frame, Inline, Pdu};
+use std::collections::BTreeMap;
+
+/// The links of a line. A serial line has one, a TCP port has one for each client.
+#[derive(Debug, Default)]
+pub(super) struct Links {
+    by_id: BTreeMap<LinkId, Link>,
+    next: u32,
+}
+
+#[derive(Debug)]
+struct Link {
+    line: Line,
+    /// A client of Modbus TCP.
+    is_tcp: bool,
+}
+
+impl Links {
+    pub fn open(&mut self, framing: Framing) -> LinkId {
+        let id = LinkId(self.next);
+        self.next += 1;
+        let is_tcp = framing == Framing::Mbap;
+        self.by_id.insert(id, Link { line: Line::new(framing), is_tcp });
+        id
+    }
+
+    pub fn close(&mut self, link: LinkId) {
+        self.by_id.remove(&link);
+    }
+
+    /// Tells frames on all serial links apart in another way. What was half received is forgotten.
+    pub fn reframe_all(&mut self, framing: Framing) {
+        let serial = self.by_id.values_mut().filter(|link| !link.is_tcp);
+        serial.for_each(|link| link.line = Line::new(framing));
+    }
+
+    /// The line of `link`, unless that is closed.
+    pub fn line(&self, link: LinkId) -> Option<&Line> {
+        self.by_id.get(&link).map(|it| &it.line)
+    }
+
+    /// All of them.
+    pub fn lines(&self) -> impl Iterator<Item = (LinkId, &Line)> {
+        self.by_id.iter().map(|(id, link)| (*id, &link.line))
+    }
+
+    /// When silence will end what was half received, by link.
+    pub fn silences(&self) -> impl Iterator<Item = (Instant, LinkId)> {
+        self.lines().filter_map(|(link, line)| Some((line.deadline()?, link)))
+    }
+
+    /// Takes bytes that arrived on `link` at `now`. Is it open?
+    pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) -> bool {
+        let line = self.by_id.get_mut(&link);
+        line.map(|it| it.line.receive(now, bytes)).is_some()
+    }
+
+    /// What `link` has received next if there was silence until `now`.
+    pub fn next(&mut self, now: Instant, link: LinkId, stations: &Stations) -> Option<LineInput> {
+        let Link { line, is_tcp } = self.by_id.get_mut(&link)?;
+        let event = line.next(now, stations.units())?;
+        Some(LineInput::of(event, *is_tcp, stations.sole().is_some()))
+    }
+}
+
+/// What a line has received, detached from its buffer so that drives and links can be touched again.
+pub(super) enum LineInput {
+    /// To one of our units.
+    Request { unit: u8, pdu: Pdu },
+    /// To every drive of the line.
+    Broadcast(Pdu),
+    /// A master's request to somebody who is not here.
+    ForeignRequest(What),
+    /// A frame with a wrong checksum.
+    BadCrc { frame: Frame, crc: BadCrc },
+    /// Nothing that anybody answers.
+    Other(What),
+    /// The stream can't be followed any more.
+    Lost(What),
+}
+
+impl LineInput {
+    /// From a line that is Modbus TCP, or not, and whose only drive is there, or not.
+    fn of(event: LineEvent<'_>, is_tcp: bool, is_sole: bool) -> Self {
+        let whoever = is_tcp && is_sole;
+        match event {
+            // Modbus TCP lets a client say 0 or 255 for "whoever is there" (messaging on TCP/IP, 4.4.1.2).
+            LineEvent::Request(adu) if adu.unit == BROADCAST && !whoever => {
+                match Self::request(adu, is_tcp) {
+                    Self::Request { pdu, .. } => Self::Broadcast(pdu),
+                    reply => reply,
+                }
+            }
+            LineEvent::Foreign(Foreign::Request(adu)) if adu.unit == 0xFF && whoever => {
+                Self::request(adu, is_tcp)
+            }
+            LineEvent::Request(adu) => Self::request(adu, is_tcp),
+            LineEvent::Foreign(Foreign::Request(adu)) => Self::ForeignRequest(foreign(adu, false)),
+            LineEvent::Foreign(Foreign::Response(adu)) => Self::Other(foreign(adu, true)),
+            LineEvent::BadCrc { bytes, crc } => {
+                Self::BadCrc { frame: Frame::from_slice(bytes), crc }
+            }
+            LineEvent::BadAscii { bytes, why } => {
+                Self::Other(What::BadAscii { characters: Frame::from_slice(bytes), why })
+            }
+            LineEvent::Noise { bytes, len, why } => {
+                Self::Other(What::Noise { head: Inline::from_slice(bytes), len, why })
+            }
+            LineEvent::Lost(why) => Self::Lost(What::Lost(why)),
+        }
+    }
+
+    /// On a serial line the exception bit makes it a reply: our own, come back through a 2-wire adapter, or one of a
+    /// second drive at our address. Answering it would never end. A TCP client sends nothing but requests.
+    fn request(adu: Adu<'_>, is_tcp: bool) -> Self {
+        match !is_tcp && adu.function() & EXCEPTION != 0 {
+            true => Self::Other(foreign(adu, true)),
+            false => Self::Request { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu) },
+        }
+    }
+}
+
+fn foreign(adu: Adu<'_>, answer: bool) -> What {
+    What::Foreign { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu), answer }
+}
