@@ -199,11 +199,8 @@ impl When {
 }
 
 fn touches(spans: &[Span], request: &[u8]) -> bool {
-    let touched = match Request::parse(request, LengthCheck::CountOnly) {
-        Ok(Request::Read(span) | Request::WriteMany { span, .. }) => span,
-        Ok(Request::WriteOne { address, .. }) => Span::one(address),
-        Err(_) => return false,
-    };
+    let request = Request::parse(request, LengthCheck::CountOnly);
+    let Ok(touched) = request.map(Request::span) else { return false };
     spans.iter().any(|span| span.start() <= touched.last() && touched.start() <= span.last())
 }
 

@@ -93,7 +93,7 @@ pub enum Request<'a> {
 /// A PDU that is no [`Request`], and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Malformed {
-    /// A function code other than 0x03, 0x06 and 0x10.
+    /// A function code that is none of [`function::ALL`](super::function::ALL).
     Function(u8),
     /// Too long or too short, or a byte count that does not fit.
     Length {

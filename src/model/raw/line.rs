@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawLine {
-    /// Function codes that the drive knows, out of 0x03, 0x06 and 0x10.
+    /// Function codes that the drive supports; a request with another one is refused with cause `function`.
     pub functions: Vec<u8>,
     /// Where the unit address comes from.
     pub unit: RawUnit,
