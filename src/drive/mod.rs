@@ -34,10 +34,10 @@ pub use setup::Setup;
 pub use timer::Timer;
 pub use view::View;
 
-use crate::bank::{Bank, Causes, Gate};
+use crate::bank::{Bank, Causes, Gate, word_of};
 use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Watchdog};
 use crate::event::{Change, Ignored, Ordered};
-use crate::model::Model;
+use crate::model::{Located, Model};
 use crate::serial::Mode;
 use crate::time::Instant;
 use crate::vocabulary::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
@@ -218,6 +218,11 @@ impl Drive {
                 self.write(span, values)?;
                 Ok(Response::WriteMany(span))
             }
+            Ok(Request::MaskWrite { address, masks }) => {
+                let word = masks.apply(self.held_word(address)).to_be_bytes();
+                self.write(Span::one(address), Words::one(&word))?;
+                Ok(Response::MaskWrite { address, masks })
+            }
             Err(malformed) => {
                 Err(self.refuse(Causes::of_malformed(pdu, malformed, &self.model.line)))
             }
@@ -385,6 +390,13 @@ impl Drive {
         self.read = read;
         self.look_at_dark(dark.into_inner());
         Ok(Response::Read(&self.read[..len]))
+    }
+
+    /// The word at `address` that the register holds, whatever it shows; 0 where there is none.
+    fn held_word(&self, address: u16) -> u16 {
+        let Located::Word { row: id, word, .. } = self.model.map.locate(address) else { return 0 };
+        let row = self.model.map.row(id);
+        word_of(row, self.bank.order(&self.model, row), self.bank.raw(id), word)
     }
 
     fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {

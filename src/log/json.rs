@@ -5,8 +5,9 @@ use super::{no_effect, text, why};
 use crate::bus::Bus;
 use crate::drive::Drive;
 use crate::event::{Change, DeviceFault, Event, Outcome, Replanned, Transaction, What};
-use crate::model::Row;
+use crate::model::{Located, Row};
 use crate::vocabulary::{Named, Refusal};
+use crate::wire::Masks;
 use crate::wire::hex::to_hex;
 use serde_json::{Map, Value, json};
 
@@ -140,6 +141,14 @@ fn item_fields(drive: &Drive, item: Item) -> Value {
         Item::Bare(address, word) => json!({"address": address, "word": word}),
         Item::Unlisted(first, last) => {
             json!({"address": first, "words": last - first + 1, "mapped": false})
+        }
+        Item::Masked(address, Masks { and, or }) => {
+            let mut fields = match map.locate(address) {
+                Located::Word { row, .. } => named(map.row(row)),
+                Located::Hole | Located::Beyond => json!({}),
+            };
+            merge(&mut fields, json!({"address": address, "and": and, "or": or}));
+            fields
         }
     }
 }

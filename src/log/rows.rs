@@ -3,7 +3,7 @@
 use crate::bank::row_value;
 use crate::drive::Drive;
 use crate::model::{Located, Row, RowId};
-use crate::wire::{LengthCheck, Request, Span, Words};
+use crate::wire::{LengthCheck, Masks, Request, Span, Words};
 
 /// A row of a request with the number that travelled, or a bare word where there is no row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum Item {
     Bare(u16, u16),
     /// Addresses without a row, from the first to the last, that a read gave as 0.
     Unlisted(u16, u16),
+    /// What becomes of the bits of the word at an address.
+    Masked(u16, Masks),
 }
 
 /// What a request does, in rows.
@@ -41,6 +43,9 @@ pub fn request(drive: &Drive, pdu: &[u8]) -> DecodedRequest {
         }
         Ok(Request::WriteMany { span, values }) => {
             DecodedRequest::Write(span, items(drive, span, |i| Words::get(values, i)))
+        }
+        Ok(Request::MaskWrite { address, masks }) => {
+            DecodedRequest::Write(Span::one(address), vec![Item::Masked(address, masks)])
         }
         Err(_) => DecodedRequest::Other,
     }
@@ -116,6 +121,14 @@ pub fn text(drive: &Drive, item: Item) -> String {
             format!("0x{first:04X} = 0 (not mapped)")
         }
         Item::Unlisted(first, last) => format!("0x{first:04X}..0x{last:04X} = 0 (not mapped)"),
+        Item::Masked(address, Masks { and, or }) => {
+            let place = match map.locate(address) {
+                Located::Word { row, .. } if map.row(row).kind.words() == 1 => label(map.row(row)),
+                Located::Word { row, .. } => format!("one word of {}", label(map.row(row))),
+                Located::Hole | Located::Beyond => format!("0x{address:04X}"),
+            };
+            format!("{place} AND 0x{and:04X} OR 0x{or:04X}")
+        }
     }
 }
 

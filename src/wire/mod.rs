@@ -14,7 +14,7 @@ pub mod rtu;
 
 pub use checksum::{crc16, lrc};
 pub use frame::{Adu, Frame, Inline, NoiseCause, Pdu};
-pub use request::{LengthCheck, Malformed, Request, Span, Words};
+pub use request::{LengthCheck, Malformed, Masks, Request, Span, Words};
 pub use response::{Exception, Response};
 
 /// Function codes.
@@ -25,10 +25,12 @@ pub mod function {
     pub const WRITE_ONE: u8 = 0x06;
     /// Write Multiple Registers.
     pub const WRITE_MANY: u8 = 0x10;
+    /// Mask Write Register.
+    pub const MASK_WRITE: u8 = 0x16;
     /// Those that a drive can support.
-    pub const ALL: [u8; 3] = [READ, WRITE_ONE, WRITE_MANY];
+    pub const ALL: [u8; 4] = [READ, WRITE_ONE, WRITE_MANY, MASK_WRITE];
     /// Those of them that write registers.
-    pub const WRITES: [u8; 2] = [WRITE_ONE, WRITE_MANY];
+    pub const WRITES: [u8; 3] = [WRITE_ONE, WRITE_MANY, MASK_WRITE];
     /// Set in the function code of an exception.
     pub const EXCEPTION: u8 = 0x80;
 }

@@ -1,6 +1,6 @@
 //! Requests, as types that can't lie: a [`Span`] never wraps, [`Words`] are as many as the span says.
 
-use super::function::{READ, WRITE_MANY, WRITE_ONE};
+use super::function::{MASK_WRITE, READ, WRITE_MANY, WRITE_ONE};
 
 /// A run of registers: at least one, none beyond 0xFFFF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,6 +47,11 @@ impl Span {
 pub struct Words<'a>(&'a [u8]);
 
 impl<'a> Words<'a> {
+    /// One value.
+    pub fn one(bytes: &'a [u8; 2]) -> Self {
+        Self(bytes)
+    }
+
     /// How many.
     pub fn len(self) -> usize {
         self.0.len() / 2
@@ -69,6 +74,22 @@ impl<'a> Words<'a> {
     }
 }
 
+/// What becomes of the bits of a register (application protocol, 6.16).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Masks {
+    /// Bits that stay as they are.
+    pub and: u16,
+    /// What the others become.
+    pub or: u16,
+}
+
+impl Masks {
+    /// The value that `current` becomes.
+    pub fn apply(self, current: u16) -> u16 {
+        current & self.and | self.or & !self.and
+    }
+}
+
 /// A request that a drive can decide about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Request<'a> {
@@ -87,6 +108,13 @@ pub enum Request<'a> {
         span: Span,
         /// Their new values, as many as the span has registers.
         values: Words<'a>,
+    },
+    /// 0x16 Mask Write Register (6.16).
+    MaskWrite {
+        /// Which register.
+        address: u16,
+        /// What becomes of its bits.
+        masks: Masks,
     },
 }
 
@@ -135,6 +163,12 @@ impl<'a> Request<'a> {
                 Ok(Self::WriteOne { address: u16::from_be_bytes([a, b]), value: Words(&pdu[3..]) })
             }
             Some(&WRITE_MANY) => Self::parse_write_many(pdu, check),
+            Some(&MASK_WRITE) => {
+                let [_, a, b, c, d, e, f] = exactly(pdu)?;
+                let masks =
+                    Masks { and: u16::from_be_bytes([c, d]), or: u16::from_be_bytes([e, f]) };
+                Ok(Self::MaskWrite { address: u16::from_be_bytes([a, b]), masks })
+            }
             other => Err(Malformed::Function(other.copied().unwrap_or(0))),
         }
     }
@@ -143,7 +177,7 @@ impl<'a> Request<'a> {
     pub fn span(self) -> Span {
         match self {
             Self::Read(span) | Self::WriteMany { span, .. } => span,
-            Self::WriteOne { address, .. } => Span::one(address),
+            Self::WriteOne { address, .. } | Self::MaskWrite { address, .. } => Span::one(address),
         }
     }
 
@@ -205,6 +239,17 @@ mod tests {
         // Two registers announced, the byte count of one.
         let want = Malformed::Length { got: 8, want: 10 };
         assert_eq!(parse(&[16, 0, 0, 0, 2, 2, 0, 1]), Err(want));
+    }
+
+    #[test]
+    fn masks_keep_and_set_bits() {
+        // The example of the specification.
+        let masks = Masks { and: 0xF2, or: 0x25 };
+        assert_eq!(masks.apply(0x12), 0x17);
+        let pdu = [0x16, 0, 4, 0, 0xF2, 0, 0x25];
+        assert_eq!(parse(&pdu), Ok(Request::MaskWrite { address: 4, masks }));
+        assert_eq!(parse(&pdu).map(Request::span), Ok(Span::one(4)));
+        assert_eq!(parse(&pdu[..5]), Err(Malformed::Length { got: 5, want: 7 }));
     }
 
     #[test]

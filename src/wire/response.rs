@@ -1,8 +1,8 @@
 //! Answers: what a drive says back, and how it lies in a PDU.
 
 use super::Pdu;
-use super::function::{EXCEPTION, READ, WRITE_MANY, WRITE_ONE};
-use super::request::Span;
+use super::function::{EXCEPTION, MASK_WRITE, READ, WRITE_MANY, WRITE_ONE};
+use super::request::{Masks, Span};
 
 /// An exception: the function that failed and the code that says why.
 ///
@@ -29,6 +29,13 @@ pub enum Response<'a> {
     },
     /// To 0x10: what was written.
     WriteMany(Span),
+    /// To 0x16: an echo.
+    MaskWrite {
+        /// Which register.
+        address: u16,
+        /// What became of its bits.
+        masks: Masks,
+    },
     /// A refusal.
     Exception(Exception),
 }
@@ -51,6 +58,10 @@ impl Response<'_> {
                 pdu.push(WRITE_MANY);
                 pdu.extend(&span.start().to_be_bytes());
                 pdu.extend(&span.count().to_be_bytes());
+            }
+            Self::MaskWrite { address, masks: Masks { and, or } } => {
+                pdu.push(MASK_WRITE);
+                [address, and, or].iter().for_each(|word| pdu.extend(&word.to_be_bytes()));
             }
             Self::Exception(Exception { function, code }) => {
                 pdu.extend(&[function | EXCEPTION, code]);
