@@ -35,7 +35,7 @@ impl Drive {
         let reversed = row.is_some_and(|row| self.bank.value(&self.model, row) != 0);
         if reversed != self.reversed && !self.motor.is_moving() {
             let position = self.seen_position(self.now).saturating_sub(self.zero);
-            self.motor.turn_round(self.now);
+            self.motor.reverse_direction(self.now);
             self.reversed = reversed;
             self.zero = self.motor.position(self.now).saturating_sub(position);
         }

@@ -55,7 +55,7 @@ pub enum CrossingDirection {
 }
 
 impl CrossingDirection {
-    /// Is `value` past `mark`, for somebody who goes this way? A mark belongs to its upper side, so
+    /// Is `value` past `mark`, for an axis that goes this way? A mark belongs to its upper side, so
     /// that zones `[from, to)` can be made of two of them.
     fn is_past(self, value: f64, mark: f64) -> bool {
         match self {

@@ -168,7 +168,7 @@ proptest! {
 }
 
 proptest! {
-    /// Whoever waits for a count is told of the first nanosecond that shows it.
+    /// A wait for a count ends at the first nanosecond that shows it.
     #[test]
     fn counts_are_met(of in trajectories(), count in -20_000i64..20_000) {
         let side = |at| of.position(at).cmp(&count);

@@ -4,7 +4,7 @@
 //! in no segment does the speed change its sign, and the first segment starts at the beginning.
 //!
 //! When it passes a position is a whole nanosecond at which the state is past the mark, while one nanosecond before it is
-//! not. So whoever looks at the state when the deadline comes sees what the deadline says.
+//! not. So the state at a deadline is what the deadline says.
 
 use super::{CrossingDirection, State, search};
 use crate::time::{Duration, Instant};
@@ -285,7 +285,7 @@ mod tests {
         assert_eq!(standing.crossing(5.0, CrossingDirection::Rising, Instant::ZERO), None);
     }
 
-    /// `found` is a change, and nobody who looks at `instants` sees one before it.
+    /// `found` is a change, and none of `instants` before it shows one.
     fn check(
         found: Option<Instant>,
         after: Instant,
@@ -319,7 +319,7 @@ mod tests {
                 let found = of.crossing(position, way, after);
                 let past = |at| way.is_past(of.state(at).position, position);
                 check(found, after.max(of.begin), &instants, past)?;
-                // Whoever asks later, but not too late, gets the same answer.
+                // A later question, but not too late, has the same answer.
                 if let Some(at) = found {
                     prop_assert_eq!(of.crossing(position, way, at - NS), found);
                 }

@@ -67,8 +67,8 @@ pub(super) struct HomingView {
 /// What the axis is to do for a homing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum HomingMove {
-    /// Look out for something else on the way.
-    LookOut,
+    /// Go on, and wait for something else on the way.
+    ResetTimers,
     /// Begin this trajectory, which goes that way, and see what it meets.
     Go { trajectory: Trajectory, forward: bool },
     /// Begin this trajectory, to go on when it is over.
@@ -220,7 +220,7 @@ impl Homing {
         if arms {
             self.state = HomingState::Seeking { armed: true };
         }
-        self.meet_limit(view, effects).or(arms.then_some(HomingMove::LookOut))
+        self.meet_limit(view, effects).or(arms.then_some(HomingMove::ResetTimers))
     }
 
     /// What it waits for is at `at`.
@@ -318,7 +318,7 @@ impl Homing {
             // It passes the limit, or has started there: the index pulse lies beyond.
             Some(Until::Index(Some(it))) if seeking && it == edge => {
                 self.state = HomingState::Seeking { armed: true };
-                return Some(HomingMove::LookOut);
+                return Some(HomingMove::ResetTimers);
             }
             // It goes back to where it has just been.
             Some(Until::SameIndex) if seeking => return None,

@@ -1,8 +1,8 @@
 //! What the axis is doing: it stands, moves to a position, runs, jogs, looks for its origin, stops or coasts.
 //!
 //! An order becomes a trajectory and a phase; after that nothing happens until something on the way does (`transitions.rs`): the
-//! trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the order; who wants
-//! others on the way says so, and the rest is planned anew.
+//! trajectory ends, a switch changes, a limit or a hard stop is met. Speeds and slopes come with the order; others on
+//! the way have the rest planned anew.
 //!
 //! Each part owns what it knows: [`PositionLoop`] where the axis is and is told to be, [`MotionState`] what is under way,
 //! [`Homing`] how far the search for the origin has come, [`MotorLevels`] what levels ask for, [`MotorTimers`] what
@@ -102,8 +102,8 @@ impl Motor {
         self.timers.set_ones()
     }
 
-    /// Has a switch of the machine changed up to `now`? Asked once for each time; whoever knows what the
-    /// switches are wired to looks at them then, and before [`Motor::advance`].
+    /// Has a switch of the machine changed up to `now`? It says so once; the drive, which knows what the switches are
+    /// wired to, reads them then, and before [`Motor::advance`].
     pub fn take_switch_edge(&mut self, now: Instant) -> bool {
         let expired = self.timers.take(MotorTimer::SwitchEdge, now);
         if expired {
@@ -215,9 +215,9 @@ impl Motor {
     }
 
     /// Counts the other way from now on, while it stands: the same place has the other sign.
-    pub fn turn_round(&mut self, now: Instant) {
+    pub fn reverse_direction(&mut self, now: Instant) {
         self.position_loop.reverse(now);
-        self.look_ahead(now);
+        self.reset_timers(now);
     }
 
     /// Does something block it?
@@ -228,7 +228,7 @@ impl Motor {
     /// Blocks it at the count where it is.
     pub fn block(&mut self, now: Instant) {
         self.position_loop.block(now);
-        self.look_ahead(now);
+        self.reset_timers(now);
         self.sample_home_switches(now);
     }
 
@@ -241,7 +241,7 @@ impl Motor {
             _ => Release::GoOn,
         };
         if self.position_loop.unblock(now, release) {
-            self.look_ahead(now);
+            self.reset_timers(now);
         }
     }
 
@@ -249,7 +249,7 @@ impl Motor {
     pub fn follow(&mut self, now: Instant, levels: MotorLevels) {
         let before = std::mem::replace(&mut self.levels, levels);
         if (before.soft_limits, before.deviation) != (levels.soft_limits, levels.deviation) {
-            self.look_ahead(now);
+            self.reset_timers(now);
         }
         self.jog_spent &= levels.jog.is_some();
         if !levels.power {
@@ -297,7 +297,7 @@ impl Motor {
         self.motion.goal = Goal::Position(target, ramp);
         let from = self.position_loop.move_start(now);
         let trajectory = match self.levels.pause {
-            true => self.held_back(now, from),
+            true => self.pause_trajectory(now, from),
             false => ramp.reach(now, from, target),
         };
         self.lose_origin(HomeEnd::Replaced);
@@ -306,7 +306,7 @@ impl Motor {
         self.effects.push_back(Effect::MoveStarted(target));
         if self.levels.pause {
             self.motion.paused = true;
-            self.look_ahead(now);
+            self.reset_timers(now);
             self.effects.push_back(Effect::MovePaused);
         }
         self.advance(now);

@@ -1,4 +1,4 @@
-//! What holds for an axis whatever it is told.
+//! What holds for an axis whatever it is reported.
 
 use super::*;
 use crate::behaviour::effect::Replan;
@@ -72,7 +72,7 @@ struct MotorBench {
     motor: Motor,
     levels: MotorLevels,
     now: Instant,
-    told: Vec<(Instant, Effect)>,
+    reported: Vec<(Instant, Effect)>,
     /// The greatest jump of a position or a speed, commanded or not, that a change of settings made.
     jump: f64,
     tuned: usize,
@@ -97,7 +97,7 @@ impl MotorBench {
         let motor = Motor::standing(Instant::ZERO, 0.0, COAST, machine, Some(50.0));
         let levels = MotorLevels { power: true, ..MotorLevels::default() };
         let mut bench =
-            Self { motor, levels, now: Instant::ZERO, told: Vec::new(), jump: 0.0, tuned: 0 };
+            Self { motor, levels, now: Instant::ZERO, reported: Vec::new(), jump: 0.0, tuned: 0 };
         bench.follow();
         bench
     }
@@ -122,7 +122,7 @@ impl MotorBench {
 
     fn hear(&mut self) {
         while let Some(stage) = self.motor.poll_effect() {
-            self.told.push((self.now, stage));
+            self.reported.push((self.now, stage));
         }
     }
 
@@ -237,7 +237,7 @@ proptest! {
     ) {
         let seldom = play(machine, &orders, u64::MAX / 2, |_| {});
         let often = play(machine, &orders, step, |_| {});
-        prop_assert_eq!(seldom.told, often.told);
+        prop_assert_eq!(seldom.reported, often.reported);
         prop_assert_eq!(seldom.motor, often.motor);
     }
 
@@ -295,7 +295,7 @@ proptest! {
         let at = bench.now + Duration::from_millis(500);
         bench.advance_to(at);
         prop_assert!(!bench.motor.is_moving());
-        let (place, told) = (bench.motor.state(at), bench.told.len());
+        let (place, reported) = (bench.motor.state(at), bench.reported.len());
         for (wait, order) in orders {
             bench.advance_to(bench.now + Duration::from_millis(wait));
             if !matches!(order, MotorOrder::Follow { .. }) {
@@ -303,7 +303,7 @@ proptest! {
             }
         }
         prop_assert_eq!(bench.motor.state(bench.now), place);
-        prop_assert_eq!(bench.told.len(), told);
+        prop_assert_eq!(bench.reported.len(), reported);
     }
 }
 
@@ -317,7 +317,7 @@ fn settings_that_change_are_followed() {
     bench.advance_to(Instant::from_millis(1000));
     assert_eq!(bench.motor.state(bench.now).speed, 2000.0);
     assert_eq!((bench.tuned, bench.jump), (1, 0.0));
-    assert!(bench.told.iter().any(|(_, it)| *it == Effect::Replanned(Replan::Speed(2000.0))));
+    assert!(bench.reported.iter().any(|(_, it)| *it == Effect::Replanned(Replan::Speed(2000.0))));
 }
 
 #[test]
@@ -354,7 +354,7 @@ fn coasts_only_while_it_moves() {
         let held = bench.motor.phase() == Phase::Moving;
         bench.levels.power = false;
         bench.follow();
-        (held, bench.told.iter().any(|(_, it)| *it == Effect::Coasting))
+        (held, bench.reported.iter().any(|(_, it)| *it == Effect::Coasting))
     };
     assert_eq!(coasts(false, 310), (true, true));
     assert_eq!(coasts(true, 2000), (true, false));

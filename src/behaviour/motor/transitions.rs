@@ -27,16 +27,16 @@ impl Motor {
             }
         };
         let jumps = self.position_loop.begin(now, trajectory, rule);
-        self.look_ahead(now);
+        self.reset_timers(now);
         if jumps {
-            self.look_at_switches(now);
+            self.expire_switch_edge(now);
         }
     }
 
     /// Goes on along `trajectory`, which starts where the present one is.
     fn go_on(&mut self, now: Instant, trajectory: Trajectory) {
         self.position_loop.go_on(now, trajectory);
-        self.look_ahead(now);
+        self.reset_timers(now);
     }
 
     pub(super) fn go(&mut self, now: Instant, ramp: Ramp, phase: Phase) {
@@ -57,9 +57,9 @@ impl Motor {
     }
 
     /// Nothing is under way any more.
-    fn stand(&mut self, now: Instant, arrived: bool) {
+    fn end_motion(&mut self, now: Instant, arrived: bool) {
         self.motion.end(arrived);
-        self.look_ahead(now);
+        self.reset_timers(now);
         // Where it is to stand: it may still be on its last counts.
         self.effects.push_back(Effect::Stopped(self.position_loop.command_count(now)));
     }
@@ -86,13 +86,13 @@ impl Motor {
     pub(super) fn halt(&mut self, now: Instant) {
         if self.levels.power && self.is_moving() {
             self.lose_origin(HomeEnd::Stopped);
-            self.stand_still(now);
+            self.stop_at_once(now);
             self.effects.push_back(Effect::Stopping);
         }
     }
 
     /// The command stands at once.
-    fn stand_still(&mut self, now: Instant) {
+    fn stop_at_once(&mut self, now: Instant) {
         self.motion.goal = Goal::None;
         let trajectory = Trajectory::halt(now, self.state(now));
         self.begin(now, trajectory, Phase::Stopping);
@@ -102,13 +102,13 @@ impl Motor {
         if self.is_moving() && self.motion.phase != Phase::Coasting {
             self.lose_origin(HomeEnd::PowerOff);
             let rests = self.speed(now) == 0.0;
-            self.run_out(now);
+            self.coast_to_rest(now);
             self.effects.extend((!rests).then_some(Effect::Coasting));
             self.advance(now);
         }
     }
 
-    fn run_out(&mut self, now: Instant) {
+    fn coast_to_rest(&mut self, now: Instant) {
         self.motion.goal = Goal::None;
         let trajectory = Trajectory::coast(now, self.feedback(now), self.coast);
         self.begin(now, trajectory, Phase::Coasting);
@@ -154,8 +154,8 @@ impl Motor {
     /// Ends a motion as a limit does.
     fn stop_at_limit(&mut self, now: Instant) {
         match self.levels.limit_stop {
-            LimitStop::Coast => self.run_out(now),
-            LimitStop::Quick => self.stand_still(now),
+            LimitStop::Coast => self.coast_to_rest(now),
+            LimitStop::Quick => self.stop_at_once(now),
             LimitStop::Ramp => {
                 let trajectory = self.slow_down(now);
                 self.begin(now, trajectory, Phase::Stopping);
@@ -181,13 +181,13 @@ impl Motor {
     /// The move under way slows down to a standstill, and is not over.
     fn pause(&mut self, now: Instant) {
         self.motion.paused = true;
-        let trajectory = self.held_back(now, self.position_loop.setpoint(now));
+        let trajectory = self.pause_trajectory(now, self.position_loop.setpoint(now));
         self.go_on(now, trajectory);
         self.effects.push_back(Effect::MovePaused);
     }
 
     /// The trajectory of a move that is held back, from a state of its command.
-    pub(super) fn held_back(&self, now: Instant, from: State) -> Trajectory {
+    pub(super) fn pause_trajectory(&self, now: Instant, from: State) -> Trajectory {
         let (slope, change) = self.motion.goal.stop(self.levels.decel);
         Trajectory::stop(now, from, slope.of(change))
     }
@@ -207,7 +207,7 @@ impl Motor {
     /// The command of a move stands at once; what the axis is behind it makes up for.
     fn end_command(&mut self, now: Instant) {
         if self.motion.phase == Phase::Moving {
-            self.stand_still(now);
+            self.stop_at_once(now);
             self.effects.push_back(Effect::Stopping);
         }
     }
@@ -231,9 +231,9 @@ impl Motor {
             Phase::Moving | Phase::Stopping | Phase::Homing | Phase::Coasting => return,
         }
         self.position_loop.forget_lag();
-        self.look_ahead(now);
+        self.reset_timers(now);
         if behind.abs() >= LEAST_DEVIATION {
-            self.look_at_switches(now);
+            self.expire_switch_edge(now);
         }
         let counts = behind.round() as i64;
         self.effects.extend((counts != 0).then_some(Effect::DeviationCleared(counts)));
@@ -277,8 +277,8 @@ impl Motor {
 
 // What happens by itself.
 impl Motor {
-    /// Finds out again what lies ahead.
-    pub(super) fn look_ahead(&mut self, now: Instant) {
+    /// Solves anew for what will happen to it by itself.
+    pub(super) fn reset_timers(&mut self, now: Instant) {
         self.deviates &= self.is_deviating(now);
         let waits = self.homing.as_ref().map(|it| it.waits()).unwrap_or_default();
         let at = &self.position_loop;
@@ -317,8 +317,8 @@ impl Motor {
         deadlines.into_iter().for_each(|(timer, at)| self.timers.set(timer, at));
     }
 
-    /// The axis is elsewhere than its command was: who knows where the switches lie.
-    fn look_at_switches(&mut self, now: Instant) {
+    /// The axis is elsewhere than its command was, so that any switch may have changed.
+    fn expire_switch_edge(&mut self, now: Instant) {
         self.timers.set(MotorTimer::SwitchEdge, Some(now));
     }
 
@@ -351,11 +351,11 @@ impl Motor {
                 self.effects.push_back(Effect::DeviationExceeded);
             }
             MotorTimer::SoftLimit => self.obey_limits(now),
-            MotorTimer::TargetReached => self.stand(now, true),
+            MotorTimer::TargetReached => self.end_motion(now, true),
             MotorTimer::Standstill if self.is_homing() => {
                 self.ask_homing(now, |homing, view, effects| homing.stopped(view, effects));
             }
-            MotorTimer::Standstill => self.stand(now, false),
+            MotorTimer::Standstill => self.end_motion(now, false),
             MotorTimer::HomingTimeLimit => {
                 let (why, alarm, by_limit) = (HomeEnd::TimeLimit, true, false);
                 self.make_homing_move(now, HomingMove::Abort { why, alarm, by_limit });
@@ -392,7 +392,7 @@ impl Motor {
 
     fn make_homing_move(&mut self, now: Instant, next: HomingMove) -> Option<HomingMove> {
         match next {
-            HomingMove::LookOut => self.look_ahead(now),
+            HomingMove::ResetTimers => self.reset_timers(now),
             HomingMove::Go { trajectory, forward } => {
                 self.motion.forward = forward;
                 self.begin(now, trajectory, Phase::Homing);
@@ -410,7 +410,7 @@ impl Motor {
             HomingMove::Done { origin } => {
                 self.homing = None;
                 self.effects.push_back(Effect::HomingDone(origin));
-                self.stand(now, true);
+                self.end_motion(now, true);
             }
         }
         None
