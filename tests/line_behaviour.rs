@@ -41,7 +41,7 @@ impl Bench {
     fn seeded(text: &str, seed: u64) -> Self {
         let line = line(text);
         let mut bus = line.bus(seed);
-        let link = bus.open(line.wire.framing(1.0));
+        let link = bus.open_on(line.ports[0].carrier(), line.wire.framing(1.0));
         let mut bench = Self { bus, link, sent: Vec::new(), events: Vec::new() };
         bench.until(Instant::from_millis(2000));
         bench.sent.clear();

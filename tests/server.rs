@@ -3,6 +3,7 @@
 mod clients;
 mod command_line;
 mod determinism;
+mod gateway;
 mod links;
 mod masters;
 mod paths;

@@ -8,7 +8,7 @@ use crate::wire::Span;
 
 impl FaultContext for BenchLine {
     fn is_tcp(&self) -> bool {
-        self.port.is_tcp()
+        !self.is_serial()
     }
 
     fn line_behaviour(&self) -> &LineBehaviour {

@@ -1,8 +1,8 @@
 //! A line with its drives, as it is before anybody switches it on; and how one is put together.
 
 use super::{Device, WireSpec, match_line};
-use crate::bus::Bus;
-use crate::medium::{FaultRule, LineBehaviour, Pacing};
+use crate::bus::{Bus, Carrier};
+use crate::medium::{FaultRule, LineBehaviour};
 use crate::serial::Settings;
 
 /// One line of a bench.
@@ -10,8 +10,8 @@ use crate::serial::Settings;
 pub struct BenchLine {
     /// Its name in the log.
     pub name: String,
-    /// Where masters reach it.
-    pub port: PortSpec,
+    /// Where masters reach it; one at least.
+    pub ports: Vec<PortSpec>,
     /// How the line is set.
     pub wire: WireSpec,
     /// What is on it.
@@ -51,6 +51,24 @@ impl PortSpec {
         }
     }
 
+    /// What carries the bytes of its links.
+    pub fn carrier(&self) -> Carrier {
+        match self {
+            Self::Pty(_) | Self::RtuOverTcp(_) => Carrier::Serial,
+            Self::Serial(_) => Carrier::Uart,
+            Self::Tcp(_) => Carrier::Tcp,
+        }
+    }
+
+    /// Do both take the same path or address? Of port 0 there are many.
+    pub fn is_at_place_of(&self, other: &Self) -> bool {
+        let (Some(place), Some(others)) = (self.place(), other.place()) else { return false };
+        match self {
+            Self::Pty(_) | Self::Serial(_) => spelt(place).eq(spelt(others)),
+            Self::Tcp(_) | Self::RtuOverTcp(_) => place == others && !place.ends_with(":0"),
+        }
+    }
+
     /// The path or address that it takes, if it asks for one.
     pub fn place(&self) -> Option<&str> {
         match self {
@@ -58,22 +76,19 @@ impl PortSpec {
             Self::Serial(place) | Self::Tcp(place) | Self::RtuOverTcp(place) => Some(place),
         }
     }
-
-    /// How replies are paced on such a port.
-    pub fn pacing(&self) -> Pacing {
-        match self {
-            Self::Serial(_) => Pacing::Port,
-            Self::Pty(_) | Self::Tcp(_) | Self::RtuOverTcp(_) => Pacing::Line,
-        }
-    }
 }
 
 impl BenchLine {
+    /// Has it a port with speed and format, as all have but Modbus TCP?
+    pub fn is_serial(&self) -> bool {
+        self.ports.iter().any(|port| !port.is_tcp())
+    }
+
     /// A bus with all drives of this line on it, switched on. On a serial line they hear what is said in
     /// the line's mode; on Modbus TCP there is none. What its fault rules draw depends on `seed`.
     pub fn bus(&self, seed: u64) -> Bus {
         let mut bus = Bus::with_medium(self.medium(seed));
-        if !self.port.is_tcp() {
+        if self.is_serial() {
             bus.set_mode(self.wire.mode);
         }
         for (i, device) in self.devices.iter().enumerate() {
@@ -85,12 +100,18 @@ impl BenchLine {
     }
 }
 
+/// The parts of a path, however it is spelt; `..` stays, since only a file system knows where it leads.
+fn spelt(path: &str) -> impl Iterator<Item = std::path::Component<'_>> {
+    let parts = std::path::Path::new(path).components();
+    parts.filter(|it| *it != std::path::Component::CurDir)
+}
+
 /// Puts a line together: on a pseudo-terminal, with the speed and format that its first drive has by itself, without
 /// faults and with ideal replies, unless told otherwise.
 #[derive(Debug)]
 pub struct LineBuilder {
     name: String,
-    port: PortSpec,
+    ports: Vec<PortSpec>,
     devices: Vec<Device>,
     settings: Option<Settings>,
     ascii: Option<bool>,
@@ -113,7 +134,7 @@ impl LineBuilder {
     pub fn new(name: impl Into<String>, devices: Vec<Device>) -> Self {
         Self {
             name: name.into(),
-            port: PortSpec::Pty(None),
+            ports: vec![PortSpec::Pty(None)],
             devices,
             settings: None,
             ascii: None,
@@ -126,7 +147,17 @@ impl LineBuilder {
     /// Where masters reach it.
     #[must_use]
     pub fn port(self, port: PortSpec) -> Self {
-        Self { port, ..self }
+        self.ports(vec![port])
+    }
+
+    /// Where masters reach it, by each of `ports`.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn ports(self, ports: Vec<PortSpec>) -> Self {
+        assert!(!ports.is_empty());
+        Self { ports, ..self }
     }
 
     /// Speed and character format; `None` for those of the first drive.
@@ -172,7 +203,7 @@ impl LineBuilder {
         let mode = self.wire().mode;
         let told = self.settings.is_some() || self.ascii.is_some();
         let mut mismatches = Vec::new();
-        if !self.port.is_tcp() {
+        if self.ports.iter().any(|port| !port.is_tcp()) {
             for (device, it) in self.devices.iter_mut().enumerate() {
                 let what = match_line(it, mode, told).err();
                 mismatches.extend(what.map(|what| Mismatch { device, what }));
@@ -184,7 +215,7 @@ impl LineBuilder {
     /// The same line with each drive as its own parameters say, which may be deaf to it.
     pub fn build_unmatched(self) -> BenchLine {
         let wire = self.wire();
-        let Self { name, port, devices, line_behaviour, .. } = self;
-        BenchLine { name, port, wire, devices, faults: Vec::new(), line_behaviour }
+        let Self { name, ports, devices, line_behaviour, .. } = self;
+        BenchLine { name, ports, wire, devices, faults: Vec::new(), line_behaviour }
     }
 }

@@ -1,7 +1,7 @@
 //! LineBehaviour of a line as a bench says them: whether they can be, and whether somebody would notice.
 
+use super::Device;
 use super::raw::{RawBenchLine, RawChatter, RawPacing};
-use super::{Device, PortSpec};
 use crate::medium::{Chatter, LineBehaviour, Pacing};
 use crate::model::duration;
 use crate::problem::{Path, Problem};
@@ -21,13 +21,12 @@ const PAUSES: std::ops::RangeInclusive<Duration> =
 /// Reads the line behaviour of the line at `path`; what is wrong with them goes to `problems`.
 pub(super) fn line_behaviour(
     raw: &RawBenchLine,
-    port: &PortSpec,
     path: &Path,
     problems: &mut Vec<Problem>,
 ) -> LineBehaviour {
     let pacing = match raw.pacing {
         RawPacing::Ideal => Pacing::Ideal,
-        RawPacing::Line => port.pacing(),
+        RawPacing::Line => Pacing::Line,
     };
     let chunk = raw.chunk.as_deref().and_then(|text| {
         let path = path.key("chunk");

@@ -10,6 +10,7 @@ mod line_behaviour;
 mod machine;
 mod match_line;
 mod parse;
+mod ports;
 pub mod raw;
 mod state;
 mod wire_spec;

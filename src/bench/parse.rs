@@ -1,7 +1,8 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
 use super::line_behaviour::{line_behaviour, strangers};
-use super::raw::{RawBenchDrive, RawBenchLine, RawPacing, keys};
+use super::ports::{ports, refuse_taken};
+use super::raw::{RawBenchDrive, RawBenchLine, keys};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, MachineProblem, Mismatch,
     OverrideKey, PortSpec, Saved, SpecProblem, machine,
@@ -100,13 +101,14 @@ impl BenchReader<'_> {
             }
             let raw: Option<RawBenchLine> =
                 section::read(value, &path, &keys(), &mut self.problems);
-            let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path)) else { continue };
+            let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path, &lines)) else {
+                continue;
+            };
             if lines.iter().any(|it| it.name == line.name) {
                 let what = format!("duplicate line name `{}`", line.name);
                 let advice = "give each line its own `name`";
                 self.problems.push(Problem::value(path.key("name"), what).advise(advice));
             }
-            self.port_taken(&line, &lines, &path);
             lines.push(line);
         }
         if items.is_empty() && self.problems.is_empty() {
@@ -125,9 +127,15 @@ impl BenchReader<'_> {
         self.problems.len() > before
     }
 
-    fn line(&mut self, index: usize, raw: &RawBenchLine, path: &Path) -> Option<BenchLine> {
+    fn line(
+        &mut self,
+        index: usize,
+        raw: &RawBenchLine,
+        path: &Path,
+        above: &[BenchLine],
+    ) -> Option<BenchLine> {
         let name = raw.name.clone().unwrap_or_else(|| format!("line-{}", index + 1));
-        let port = self.port(raw, path);
+        let ports = ports(raw, path, &mut self.problems);
         let mut devices = Vec::new();
         for (i, drive) in raw.drives.iter().enumerate() {
             devices.push(self.device(drive, &path.key("drives").index(i)));
@@ -139,74 +147,14 @@ impl BenchReader<'_> {
         for (i, device) in devices.iter_mut().enumerate() {
             self.saved.give(&name, i, device);
         }
-        let line = self.wired(name, port?, raw, devices, path)?;
+        if ports.is_empty() {
+            return None;
+        }
+        refuse_taken(&ports, above, &mut self.problems);
+        let ports = ports.into_iter().map(|(port, _)| port).collect();
+        let line = self.wired(name, ports, raw, devices, path)?;
         self.addresses(&line, path);
         Some(line)
-    }
-
-    fn port(&mut self, raw: &RawBenchLine, path: &Path) -> Option<PortSpec> {
-        let given = [
-            raw.pty.as_ref().map(|link| PortSpec::Pty((link != "auto").then(|| link.clone()))),
-            raw.serial.clone().map(PortSpec::Serial),
-            raw.tcp.clone().map(PortSpec::Tcp),
-            raw.rtu_over_tcp.clone().map(PortSpec::RtuOverTcp),
-        ];
-        let mut given = given.into_iter().flatten();
-        match (given.next(), given.next()) {
-            (Some(port), None) => {
-                self.no_effect(raw, &port, path);
-                Some(port)
-            }
-            (None, _) => {
-                let what = "this line has no port";
-                let advice = "add one of pty, serial, tcp, rtu_over_tcp";
-                self.problems.push(Problem::value(path.clone(), what).advise(advice));
-                None
-            }
-            (Some(_), Some(second)) => {
-                let what = "a line has only one port, and this is a second";
-                let path = path.key(second.key());
-                self.problems.push(Problem::key(path, what).advise("use two lines"));
-                None
-            }
-        }
-    }
-
-    /// A key that could change nothing on this line is a mistake, not a decoration.
-    fn no_effect(&mut self, raw: &RawBenchLine, port: &PortSpec, path: &Path) {
-        let given = [
-            ("settings", raw.settings.is_some()),
-            ("ascii", raw.ascii.is_some()),
-            ("strict", raw.strict),
-            ("match_baud", raw.match_baud),
-            ("pacing", raw.pacing != RawPacing::Ideal),
-            ("chunk", raw.chunk.is_some()),
-            ("echo", raw.echo),
-            ("chatter", raw.chatter.is_some()),
-        ];
-        for (key, _) in given.into_iter().filter(|(_, given)| *given) {
-            let why = match (port, raw.ascii) {
-                (PortSpec::Tcp(_), _) => "on Modbus TCP",
-                (PortSpec::Pty(_), _) if key == "match_baud" => continue,
-                _ if key == "match_baud" => "on a port other than a pseudo-terminal",
-                (_, Some(true)) if key == "strict" => "with ASCII framing",
-                _ => continue,
-            };
-            let what = format!("`{key}` has no effect {why}");
-            self.problems.push(Problem::key(path.key(key), what).advise("remove it"));
-        }
-    }
-
-    fn port_taken(&mut self, line: &BenchLine, lines: &[BenchLine], path: &Path) {
-        let Some(place) = line.port.place().filter(|place| !place.ends_with(":0")) else { return };
-        let same = |it: &str| match line.port {
-            PortSpec::Pty(_) | PortSpec::Serial(_) => spelt(it).eq(spelt(place)),
-            PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => it == place,
-        };
-        if let Some(other) = lines.iter().find(|it| it.port.place().is_some_and(same)) {
-            let what = format!("line `{}` has the same port", other.name);
-            self.problems.push(Problem::value(path.key(line.port.key()), what));
-        }
     }
 
     fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
@@ -277,7 +225,7 @@ impl BenchReader<'_> {
     fn wired(
         &mut self,
         name: String,
-        port: PortSpec,
+        ports: Vec<PortSpec>,
         raw: &RawBenchLine,
         devices: Vec<Device>,
         path: &Path,
@@ -289,10 +237,10 @@ impl BenchReader<'_> {
                 return None;
             }
         };
-        let line_behaviour = line_behaviour(raw, &port, path, &mut self.problems);
+        let line_behaviour = line_behaviour(raw, path, &mut self.problems);
         strangers(&line_behaviour, &devices, path, &mut self.problems);
         let builder = LineBuilder::new(name, devices)
-            .port(port)
+            .ports(ports)
             .settings(settings)
             .ascii(raw.ascii)
             .strict(raw.strict)
@@ -337,12 +285,6 @@ impl BenchReader<'_> {
             }
         }
     }
-}
-
-/// The parts of a path, however it is spelt; `..` stays, since only a file system knows where it leads.
-fn spelt(path: &str) -> impl Iterator<Item = std::path::Component<'_>> {
-    let parts = std::path::Path::new(path).components();
-    parts.filter(|it| *it != std::path::Component::CurDir)
 }
 
 /// What the options of the drive at `path` make of its model, which is fine without them.

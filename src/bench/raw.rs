@@ -18,7 +18,8 @@ pub struct RawBench {
     pub lines: Vec<RawBenchLine>,
 }
 
-/// One line. Exactly one of `pty`, `serial`, `tcp` and `rtu_over_tcp` says where masters reach it.
+/// One line. Exactly one of `pty`, `serial`, `tcp` and `rtu_over_tcp` says where masters reach it, or `ports` lists
+/// several such ways.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawBenchLine {
@@ -32,6 +33,8 @@ pub struct RawBenchLine {
     pub tcp: Option<String>,
     /// Serial frames over TCP: address and port to listen on.
     pub rtu_over_tcp: Option<String>,
+    /// Several ports onto the same drives, such as a serial line and a TCP gateway.
+    pub ports: Option<Vec<RawPort>>,
     /// Speed and character format, `9600-8N2`; every drive on the line is set to it. Default: what the
     /// first drive's own parameters say.
     pub settings: Option<String>,
@@ -60,6 +63,32 @@ pub struct RawBenchLine {
     /// Communication faults: rules. Of all that hold for a request, the first acts.
     #[serde(default)]
     pub faults: Vec<RawFault>,
+}
+
+/// One port of several; exactly one of its keys is given.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawPort {
+    /// A pseudo-terminal of our own: the path of a symlink to it, relative to this file, or `auto` for none.
+    pub pty: Option<String>,
+    /// A serial device.
+    pub serial: Option<String>,
+    /// Modbus TCP: address and port to listen on; port 0 picks a free one.
+    pub tcp: Option<String>,
+    /// Serial frames over TCP: address and port to listen on.
+    pub rtu_over_tcp: Option<String>,
+}
+
+impl RawBenchLine {
+    /// The port that its own keys name.
+    pub(super) fn port(&self) -> RawPort {
+        RawPort {
+            pty: self.pty.clone(),
+            serial: self.serial.clone(),
+            tcp: self.tcp.clone(),
+            rtu_over_tcp: self.rtu_over_tcp.clone(),
+        }
+    }
 }
 
 /// When replies leave.
@@ -184,6 +213,7 @@ const OWN_KEYS: &[&str] = &[
     "offset",
     "options",
     "pacing",
+    "ports",
     "position",
     "positive_limit",
     "pty",

@@ -10,7 +10,7 @@ use crate::wire::rtu::BadCrc;
 use crate::wire::{Adu, BROADCAST, Frame, Inline, Pdu};
 use std::collections::BTreeMap;
 
-/// The links of a line. A serial line has one, a TCP port has one for each client.
+/// The links of a line. A serial port has one, a TCP port has one for each client.
 #[derive(Debug, Default)]
 pub(super) struct Links {
     by_id: BTreeMap<LinkId, Link>,
@@ -51,6 +51,11 @@ impl Links {
     /// All of them.
     pub fn lines(&self) -> impl Iterator<Item = (LinkId, &Line)> {
         self.by_id.iter().map(|(id, link)| (*id, &link.line))
+    }
+
+    /// Those that are no Modbus TCP.
+    pub fn serial(&self) -> impl Iterator<Item = (LinkId, &Line)> {
+        self.by_id.iter().filter(|(_, link)| !link.is_tcp).map(|(id, link)| (*id, &link.line))
     }
 
     /// When silence will end what was half received, by link.

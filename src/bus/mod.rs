@@ -4,7 +4,7 @@
 //! input. Deadlines at or before `now` happen before the input that arrives at `now`; equal ones happen in a fixed
 //! order: links, bytes that come through, replies that begin, others on the line, then drives by number.
 //!
-//! A serial line has one link. A TCP port has one for each client, all onto the same drives.
+//! A serial port has one link, a TCP port has one for each client, all onto the same drives.
 
 mod command;
 mod deadlines;
@@ -14,7 +14,7 @@ mod repeat_detector;
 mod request_counts;
 mod stations;
 
-pub use crate::medium::LinkId;
+pub use crate::medium::{Carrier, LinkId};
 pub use command::{BETWEEN_EDGES, Command, CommandError, DriveOrder, LineCommand, Reply};
 pub use output::{Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
@@ -80,10 +80,16 @@ impl Bus {
         id
     }
 
-    /// Opens a link onto the line.
+    /// Opens a link onto the line, on something that takes no time of its own.
     pub fn open(&mut self, framing: Framing) -> LinkId {
+        let is_tcp = framing == Framing::Mbap;
+        self.open_on(if is_tcp { Carrier::Tcp } else { Carrier::Serial }, framing)
+    }
+
+    /// Opens a link onto the line whose bytes `carrier` carries.
+    pub fn open_on(&mut self, carrier: Carrier, framing: Framing) -> LinkId {
         let id = self.links.open(framing);
-        self.medium.open(id);
+        self.medium.open(id, carrier);
         id
     }
 
@@ -410,9 +416,9 @@ impl Bus {
 
     /// Others on the line have their turn: our masters and our drives receive what they say.
     fn let_others_speak(&mut self) {
-        let said = self.medium.on_chatter(self.now, self.links.lines(), self.stations.units());
+        let said = self.medium.on_chatter(self.now, self.links.serial(), self.stations.units());
         let Some(frame) = said else { return };
-        let links: Vec<LinkId> = self.links.lines().map(|(link, _)| link).collect();
+        let links: Vec<LinkId> = self.links.serial().map(|(link, _)| link).collect();
         for link in links {
             self.medium.overhear(self.now, link, &frame);
             self.place_transmits();

@@ -27,11 +27,11 @@ pub fn run(args: RunArgs) -> Result<(), CliError> {
     if !(1e-3..=1e6).contains(&args.rate) {
         return Err(CliError::invalid("--rate must be from 0.001 to 1000000"));
     }
-    let mut bit_overrides = flags(&args).map_err(CliError::invalid)?;
+    let mut paths = flags(&args).map_err(CliError::invalid)?;
     let (store, state) = args.state.as_deref().map(StateArg::open).transpose()?.unzip();
     let mut state = state.unwrap_or_default();
     let (mut bench, base, models) = bench(&args, &mut state.saved)?;
-    lines(&bench, &base, &models, &mut bit_overrides).map_err(CliError::invalid)?;
+    lines(&bench, &base, &models, &mut paths).map_err(CliError::invalid)?;
     state.finish()?;
     for spec in &args.fault {
         for line in &mut bench.lines {
@@ -79,17 +79,17 @@ fn destination(path: Option<&Path>) -> Result<Option<Destination>, CliError> {
 
 /// The files that the flags name: none may be written that is read, and none twice.
 fn flags(args: &RunArgs) -> Result<PathClaims, String> {
-    let mut bit_overrides = PathClaims::new();
+    let mut paths = PathClaims::new();
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     if is_path(target) {
-        bit_overrides.reads(target, Path::new(target))?;
+        paths.reads(target, Path::new(target))?;
     }
     let named = |flag: &str, path: &Path| format!("{flag} {}", path.display());
     if let Some(path) = &args.scenario {
-        bit_overrides.reads(named("--scenario", path), path)?;
+        paths.reads(named("--scenario", path), path)?;
     }
     if let Some(path) = &args.state {
-        bit_overrides.owns(named("--state", path), path, Some(&Store::beside(path)))?;
+        paths.owns(named("--state", path), path, Some(&Store::beside(path)))?;
     }
     let outputs = [
         ("--log-file", &args.log_file),
@@ -98,10 +98,10 @@ fn flags(args: &RunArgs) -> Result<PathClaims, String> {
     ];
     for (flag, path) in outputs {
         if let Some(path) = path {
-            bit_overrides.writes(named(flag, path), path)?;
+            paths.writes(named(flag, path), path)?;
         }
     }
-    Ok(bit_overrides)
+    Ok(paths)
 }
 
 /// The files that a bench names.
@@ -109,21 +109,19 @@ fn lines(
     bench: &Bench,
     base: &Path,
     models: &[PathBuf],
-    bit_overrides: &mut PathClaims,
+    paths: &mut PathClaims,
 ) -> Result<(), String> {
     for model in models {
-        bit_overrides.reads(format!("the model {}", model.display()), model)?;
+        paths.reads(format!("the model {}", model.display()), model)?;
     }
     for line in &bench.lines {
         let name = |what: &str, path: &str| format!("the {what} {path} of line `{}`", line.name);
-        match &line.port {
-            PortSpec::Pty(Some(link)) => {
-                bit_overrides.links(name("link", link), &base.join(link))?
+        for port in &line.ports {
+            match port {
+                PortSpec::Pty(Some(link)) => paths.links(name("link", link), &base.join(link))?,
+                PortSpec::Serial(path) => paths.owns(name("port", path), Path::new(path), None)?,
+                PortSpec::Pty(None) | PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => {}
             }
-            PortSpec::Serial(path) => {
-                bit_overrides.owns(name("port", path), Path::new(path), None)?
-            }
-            PortSpec::Pty(None) | PortSpec::Tcp(_) | PortSpec::RtuOverTcp(_) => {}
         }
     }
     Ok(())
@@ -289,7 +287,7 @@ fn line(
     }
     let pacing = match args.pacing {
         PacingArg::Ideal => Pacing::Ideal,
-        PacingArg::Line => port.pacing(),
+        PacingArg::Line => Pacing::Line,
     };
     let builder = LineBuilder::new(name, vec![device])
         .port(port)
@@ -299,10 +297,10 @@ fn line(
     let own = builder.wire().mode.settings;
     let told = Some(settings(args, own)).filter(|told| *told != own);
     let (line, mismatches) = builder.settings(told).build();
-    if line.port.is_tcp() && (args.ascii || told.is_some()) {
+    if !line.is_serial() && (args.ascii || told.is_some()) {
         return Err(CliError { code: INVALID, text: "Modbus TCP has no serial settings".into() });
     }
-    if line.port.is_tcp() && args.pacing == PacingArg::Line {
+    if !line.is_serial() && args.pacing == PacingArg::Line {
         let text = "--pacing line does not apply to Modbus TCP, which has no character times";
         return Err(CliError::invalid(text));
     }

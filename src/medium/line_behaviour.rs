@@ -26,8 +26,6 @@ pub enum Pacing {
     Ideal,
     /// No earlier than the silence behind the request, the drive and the reply's characters take.
     Line,
-    /// The same on a port that takes the time of characters itself: no earlier than silence and drive take.
-    Port,
 }
 
 /// Another master and its units.

@@ -30,7 +30,7 @@ pub use line_behaviour::{Chatter, LineBehaviour, Pacing};
 pub use presets::Preset;
 pub use rules::{FaultHit, FaultRule, FaultRules, PendingHit, When};
 pub use spec::parse;
-pub use transmitter::{DriveReply, LinkId, MasterRequest, Outgoing, Passing};
+pub use transmitter::{Carrier, DriveReply, LinkId, MasterRequest, Outgoing, Passing};
 
 use crate::line::{Line, Units};
 use crate::serial::Mode;
@@ -130,8 +130,8 @@ impl Medium {
     }
 
     /// A link is there from now on.
-    pub fn open(&mut self, link: LinkId) {
-        self.transmitter.open(link);
+    pub fn open(&mut self, link: LinkId, carrier: Carrier) {
+        self.transmitter.open(link, carrier);
     }
 
     /// A link is gone, and with it what has not left on it.
@@ -146,17 +146,18 @@ impl Medium {
 
     /// The master of `link` has sent bytes: they come back where the line echoes.
     pub fn on_bytes(&mut self, now: Instant, link: LinkId, bytes: &[u8]) {
-        if self.behaviour.echo {
+        if self.behaviour.echo && !self.transmitter.is_tcp(link) {
             self.transmitter.pass(now, link, &Frame::from_slice(bytes));
         }
     }
 
-    /// A request has arrived. The rule that acts on it, if one does; its [passage](PendingHit::passage) says what
+    /// A request has arrived. The rule that acts on it, if one does and can on what carries the link; its [passage](PendingHit::passage) says what
     /// becomes of the request, and [`on_reply`](Self::on_reply) takes it to the reply.
     pub fn on_request(&mut self, now: Instant, request: &MasterRequest<'_>) -> Option<PendingHit> {
         let MasterRequest { link, adu, unit, .. } = *request;
         self.on_foreign_request(now, link);
-        let mut pending = self.rules.on_request(now, unit, adu.pdu)?;
+        let is_tcp = self.transmitter.is_tcp(link);
+        let mut pending = self.rules.on_request(now, unit, adu.pdu, is_tcp)?;
         pending.hit.unit = adu.unit;
         let effect = pending.hit.effect;
         let rng = &mut pending.rng;

@@ -138,16 +138,19 @@ impl FaultRules {
         self.rules.iter().find(|it| *it.name == *name).map(|it| it.hits)
     }
 
-    /// What happens to a request to `unit` at `now`: the first rule that holds acts.
+    /// What happens to a request to `unit` at `now`: the first rule that holds acts. Rules that are impossible on Modbus
+    /// TCP hold for no request that comes by it.
     pub(super) fn on_request(
         &mut self,
         now: Instant,
         unit: u8,
         request: &[u8],
+        is_tcp: bool,
     ) -> Option<PendingHit> {
         let mut hit = None;
         for rule in &mut self.rules {
-            if !rule.concerns(now, unit, request) {
+            let is_possible = !is_tcp || rule.effect.impossible_on_tcp().is_none();
+            if !(is_possible && rule.concerns(now, unit, request)) {
                 continue;
             }
             rule.seen += 1;

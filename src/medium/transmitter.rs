@@ -20,6 +20,17 @@ const CHUNK: usize = 62;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LinkId(pub(crate) u32);
 
+/// What carries the bytes of a link, and with it what can happen to them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Carrier {
+    /// Serial frames on something that takes no time of its own: a pseudo-terminal, a stream.
+    Serial,
+    /// A serial port, which takes the time of characters itself.
+    Uart,
+    /// Modbus TCP: no adapter, no echo, and nobody else on the line.
+    Tcp,
+}
+
 /// A request as a master sent it.
 #[derive(Debug, Clone, Copy)]
 pub struct MasterRequest<'a> {
@@ -97,8 +108,9 @@ struct Entry {
 }
 
 /// What the wire of one link is doing.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Wire {
+    carrier: Carrier,
     /// When the last character of a reply has left.
     free: Instant,
     /// What the adapter is still collecting.
@@ -161,8 +173,12 @@ impl Transmitter {
         self.mode
     }
 
-    pub(super) fn open(&mut self, link: LinkId) {
-        self.wires.insert(link, Wire::default());
+    pub(super) fn open(&mut self, link: LinkId, carrier: Carrier) {
+        self.wires.insert(link, Wire { carrier, free: Instant::ZERO, chunk: None });
+    }
+
+    pub(super) fn is_tcp(&self, link: LinkId) -> bool {
+        self.wires.get(&link).is_some_and(|wire| wire.carrier == Carrier::Tcp)
     }
 
     pub(super) fn close(&mut self, link: LinkId) {
@@ -249,7 +265,7 @@ impl Transmitter {
 
     /// Passes bytes on whose last character has just ended: no drive has sent them.
     pub(super) fn pass(&mut self, now: Instant, link: LinkId, frame: &Frame) {
-        match self.adapter {
+        match self.adapter_of(link) {
             None => self.leave(now, now, link, frame),
             Some(timer) => frame.iter().for_each(|byte| self.collect(now, link, timer, now, *byte)),
         }
@@ -263,9 +279,15 @@ impl Transmitter {
         self.pacing != Pacing::Ideal || self.adapter.is_some()
     }
 
-    /// Time that `count` characters of a reply take.
-    fn characters(&self, count: usize) -> Duration {
-        let paced = self.mode.filter(|_| self.pacing == Pacing::Line);
+    /// The adapter in front of the master of `link`.
+    fn adapter_of(&self, link: LinkId) -> Option<LatencyTimer> {
+        self.adapter.filter(|_| !self.is_tcp(link))
+    }
+
+    /// Time that `count` characters of a reply take on `link` before the bytes are handed over.
+    fn characters(&self, link: LinkId, count: usize) -> Duration {
+        let is_uart = self.wires.get(&link).is_some_and(|wire| wire.carrier == Carrier::Uart);
+        let paced = self.mode.filter(|_| self.pacing == Pacing::Line && !is_uart);
         paced.map_or(Duration::ZERO, |mode| mode.settings.characters(count as f64))
     }
 
@@ -290,11 +312,11 @@ impl Transmitter {
     fn put_on_wire(&mut self, now: Instant, link: LinkId, frame: &Frame) {
         let Some(wire) = self.wires.get(&link) else { return };
         let begins = now.max(wire.free);
-        let ends = begins + self.characters(frame.len());
+        let ends = begins + self.characters(link, frame.len());
         self.wires.entry(link).and_modify(|wire| wire.free = ends);
-        let Some(timer) = self.adapter else { return self.leave(now, ends, link, frame) };
+        let Some(timer) = self.adapter_of(link) else { return self.leave(now, ends, link, frame) };
         for (i, byte) in frame.iter().enumerate() {
-            self.collect(now, link, timer, begins + self.characters(i + 1), *byte);
+            self.collect(now, link, timer, begins + self.characters(link, i + 1), *byte);
         }
     }
 
@@ -381,7 +403,7 @@ impl Outgoing<'_> {
 
     /// Time that `count` characters take on the line.
     pub fn characters(&self, count: usize) -> Duration {
-        self.transmitter.characters(count)
+        self.transmitter.characters(self.link, count)
     }
 
     /// What the fault draws from.

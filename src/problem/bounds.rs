@@ -24,6 +24,8 @@ pub const EXPANDED: usize = 64 << 20;
 pub const LINES: usize = 256;
 /// A line has no more addresses than that.
 pub const DRIVES: usize = 247;
+/// Ports of a line.
+pub const PORTS: usize = 16;
 /// Fault rules of a line.
 pub const FAULTS: usize = 256;
 /// Steps of a scenario.

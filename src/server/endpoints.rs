@@ -1,8 +1,7 @@
 //! Where masters reach the drives of a run: the ports are opened here, told to programs in the ready file, and to people.
 
 use super::line_server::LineServer;
-use super::port::{Listener, TcpPort, TtyPort};
-use super::ports::PortFrames;
+use super::port::{Listener, Port, TcpPort, TtyPort};
 use crate::bench::{BenchLine, PortSpec};
 use crate::drive::Drive;
 use crate::serial::{Parity, Settings};
@@ -55,15 +54,60 @@ pub struct ReadyUnit {
     pub model: String,
 }
 
-/// Opens the port of `line` for `server`, which serves it. The path of a link is relative to `base`.
+/// Opens the ports of `line` for `server`, which serves them. The path of a link is relative to `base`.
 ///
 /// # Errors
-/// Why it can't be opened, as a sentence.
-pub fn open(line: &BenchLine, server: &mut LineServer, base: &Path) -> io::Result<Endpoint> {
-    let (name, settings) = (server.name().to_owned(), line.wire.mode.settings);
+/// Why one can't be opened, as a sentence.
+pub fn open(line: &BenchLine, server: &mut LineServer, base: &Path) -> io::Result<Vec<Endpoint>> {
+    (0..line.ports.len()).map(|i| open_port(line, i, server, base)).collect()
+}
+
+fn open_port(
+    line: &BenchLine,
+    number: usize,
+    server: &mut LineServer,
+    base: &Path,
+) -> io::Result<Endpoint> {
+    let (name, settings) = (port_name(line, number), line.wire.mode.settings);
+    let mut endpoint = endpoint(line, &line.ports[number], server);
+    let spec = &line.ports[number];
+    let port: Box<dyn Port> = match spec {
+        PortSpec::Pty(link) => {
+            let port = TtyPort::pty(name, link.as_ref().map(|link| base.join(link)), settings)?;
+            (endpoint.path, endpoint.link) = port.paths();
+            Box::new(port)
+        }
+        PortSpec::Serial(path) => {
+            let port = TtyPort::serial(name, path.clone(), settings)?;
+            (endpoint.path, endpoint.link) = port.paths();
+            Box::new(port)
+        }
+        PortSpec::Tcp(addr) | PortSpec::RtuOverTcp(addr) => {
+            let listener = Listener::bind(addr)?;
+            endpoint.addr = Some(listener.local_addr()?.to_string());
+            Box::new(TcpPort::new(name, listener))
+        }
+    };
+    server.open(port, spec.carrier());
+    Ok(endpoint)
+}
+
+/// What diagnostics call port number `number` of `line`: like the line, and where that has several, of which kind it is.
+fn port_name(line: &BenchLine, number: usize) -> String {
+    let (before, port) = (&line.ports[..number], &line.ports[number]);
+    let same = before.iter().filter(|it| it.key() == port.key()).count();
+    match (line.ports.len(), same) {
+        (1, _) => line.name.clone(),
+        (_, 0) => format!("{} {}", line.name, port.key()),
+        (_, same) => format!("{} {} {}", line.name, port.key(), same + 1),
+    }
+}
+
+/// A port of `line` that is not open yet.
+fn endpoint(line: &BenchLine, port: &PortSpec, server: &LineServer) -> Endpoint {
     let unit = |drive: &Drive| ReadyUnit { unit: drive.unit(), model: drive.model().name.clone() };
-    let mut endpoint = Endpoint {
-        kind: match line.port {
+    Endpoint {
+        kind: match port {
             PortSpec::Pty(_) => "pty",
             PortSpec::Serial(_) => "serial",
             PortSpec::Tcp(_) => "tcp",
@@ -72,82 +116,70 @@ pub fn open(line: &BenchLine, server: &mut LineServer, base: &Path) -> io::Resul
         path: None,
         link: None,
         addr: None,
-        name: name.clone(),
-        line: Some(settings.to_string()),
-        framing: if line.wire.mode.ascii { "ascii" } else { "rtu" },
+        name: line.name.clone(),
+        line: (!port.is_tcp()).then(|| line.wire.mode.settings.to_string()),
+        framing: match line.wire.mode.ascii {
+            _ if port.is_tcp() => "mbap",
+            true => "ascii",
+            false => "rtu",
+        },
         units: server.bus().drives().map(|(_, drive)| unit(drive)).collect(),
-    };
-    match &line.port {
-        PortSpec::Pty(link) => {
-            let port = TtyPort::pty(name, link.as_ref().map(|link| base.join(link)), settings)?;
-            (endpoint.path, endpoint.link) = port.paths();
-            server.open(Box::new(port), PortFrames::Serial);
-        }
-        PortSpec::Serial(path) => {
-            let port = TtyPort::serial(name, path.clone(), settings)?;
-            (endpoint.path, endpoint.link) = port.paths();
-            server.open(Box::new(port), PortFrames::Serial);
-        }
-        PortSpec::Tcp(addr) => {
-            let listener = Listener::bind(addr)?;
-            endpoint.addr = Some(listener.local_addr()?.to_string());
-            (endpoint.line, endpoint.framing) = (None, "mbap");
-            server.open(Box::new(TcpPort::new(name, listener)), PortFrames::Mbap);
-        }
-        PortSpec::RtuOverTcp(addr) => {
-            let listener = Listener::bind(addr)?;
-            endpoint.addr = Some(listener.local_addr()?.to_string());
-            server.open(Box::new(TcpPort::new(name, listener)), PortFrames::Serial);
-        }
     }
-    Ok(endpoint)
 }
 
 /// Says who is where, and what a newcomer would type next.
-pub fn introduce(line: &BenchLine, endpoint: &Endpoint) {
-    let units = endpoint.units.iter().map(|it| format!("unit {} {}", it.unit, it.model));
-    let units = units.collect::<Vec<_>>().join(", ");
-    // The link as the user wrote it, rather than where that leads.
-    let link = match &line.port {
-        PortSpec::Pty(Some(link)) => Some(link),
-        _ => None,
-    };
-    let place = link.or(endpoint.path.as_ref()).or(endpoint.addr.as_ref());
-    let place = place.cloned().unwrap_or_default();
-    let settings = match &endpoint.line {
-        Some(settings) => format!("{settings} {}", endpoint.framing.to_uppercase()),
-        None => "Modbus TCP".into(),
-    };
-    info!("{}: {units} on {place} ({settings})", endpoint.name);
-    if !line.line_behaviour.is_empty() {
-        info!("{}: {}", endpoint.name, line.line_behaviour);
+pub fn introduce(line: &BenchLine, endpoints: &[Endpoint]) {
+    let ports = || line.ports.iter().zip(endpoints);
+    for (port, endpoint) in ports() {
+        let units = endpoint.units.iter().map(|it| format!("unit {} {}", it.unit, it.model));
+        let units = units.collect::<Vec<_>>().join(", ");
+        let settings = match &endpoint.line {
+            Some(settings) => format!("{settings} {}", endpoint.framing.to_uppercase()),
+            None => "Modbus TCP".into(),
+        };
+        info!("{}: {units} on {} ({settings})", endpoint.name, place(port, endpoint));
     }
-    let parity = line.wire.mode.settings.format.parity;
-    if matches!(line.port, PortSpec::Pty(_)) && parity != Parity::None {
+    if !line.line_behaviour.is_empty() {
+        info!("{}: {}", line.name, line.line_behaviour);
+    }
+    let has_parity = line.wire.mode.settings.format.parity != Parity::None;
+    for (port, endpoint) in ports().filter(|(it, _)| has_parity && matches!(it, PortSpec::Pty(_))) {
+        let place = place(port, endpoint);
         info!("a pseudo-terminal carries no parity bit: open {place} with parity none");
     }
-    if let Some(command) = suggestion(line, endpoint, &place) {
+    if let Some(command) = ports().find_map(|(port, endpoint)| suggestion(line, port, endpoint)) {
         info!("try: {command}");
     }
 }
 
+/// Where it is: a link as the user wrote it, rather than where that leads.
+fn place(port: &PortSpec, endpoint: &Endpoint) -> String {
+    let link = match port {
+        PortSpec::Pty(Some(link)) => Some(link),
+        _ => None,
+    };
+    let place = link.or(endpoint.path.as_ref()).or(endpoint.addr.as_ref());
+    place.cloned().unwrap_or_default()
+}
+
 /// An `mbpoll` call that reads something from the first unit; mbpoll speaks no ASCII and no RTU over TCP.
-fn suggestion(line: &BenchLine, endpoint: &Endpoint, place: &str) -> Option<String> {
+fn suggestion(line: &BenchLine, port: &PortSpec, endpoint: &Endpoint) -> Option<String> {
+    let place = place(port, endpoint);
     let device = line.devices.first()?;
     let unit = endpoint.units.iter().find(|it| it.unit != BROADCAST)?.unit;
     let row = device.model.showcase()?;
     let read = format!("-a {unit} -0 -r {} -c {} -1", row.at, row.kind.words());
     let Settings { baud, format } = line.wire.mode.settings;
-    match &line.port {
+    match port {
         PortSpec::Pty(_) | PortSpec::Serial(_) if !line.wire.mode.ascii => {
             let parity = match format.parity {
-                _ if matches!(line.port, PortSpec::Pty(_)) => "none",
+                _ if matches!(port, PortSpec::Pty(_)) => "none",
                 Parity::None => "none",
                 Parity::Even => "even",
                 Parity::Odd => "odd",
             };
             let stop = format.stop_bits;
-            let place = quoted(place);
+            let place = quoted(&place);
             Some(format!("mbpoll -m rtu -b {baud} -P {parity} -s {stop} {read} {place}"))
         }
         PortSpec::Tcp(_) => {

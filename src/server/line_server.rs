@@ -7,10 +7,10 @@ use super::inbox::{Inbox, Message};
 use super::lock;
 use super::logger::Logger;
 use super::port::{ClientId, INPUT, Port, PortEvent};
-use super::ports::{PortFrames, PortId, Ports};
+use super::ports::{PortId, Ports};
 use super::store::Store;
 use crate::bench::WireSpec;
-use crate::bus::{Bus, LinkId, Output};
+use crate::bus::{Bus, Carrier, LinkId, Output};
 use crate::event::Event;
 use crate::line::Framing;
 use crate::scenario::{Director, Verdict};
@@ -109,19 +109,19 @@ impl LineServer {
     }
 
     /// Lets masters in by one more port.
-    pub fn open(&mut self, port: Box<dyn Port>, frames: PortFrames) {
-        self.ports.add(port, frames);
+    pub fn open(&mut self, port: Box<dyn Port>, carrier: Carrier) {
+        self.ports.add(port, carrier);
     }
 
     /// The same with a port whose master is there already and speaks on `link`.
     pub fn open_for(
         &mut self,
         port: Box<dyn Port>,
-        frames: PortFrames,
+        carrier: Carrier,
         client: ClientId,
         link: LinkId,
     ) {
-        let port = self.ports.add(port, frames);
+        let port = self.ports.add(port, carrier);
         self.ports.attach(port, client, link);
     }
 
@@ -193,7 +193,7 @@ impl LineServer {
     fn take(&mut self, port: PortId, event: PortEvent, input: &[u8]) {
         match event {
             PortEvent::Opened(client) => {
-                let link = self.bus.open(self.framing(port));
+                let link = self.bus.open_on(self.ports.carrier(port), self.framing(port));
                 self.ports.attach(port, client, link);
             }
             PortEvent::Bytes { from, len, replaced } => {
@@ -278,9 +278,9 @@ impl LineServer {
 
     /// How frames are told apart on the links of `port`.
     fn framing(&self, port: PortId) -> Framing {
-        match self.ports.frames(port) {
-            PortFrames::Serial => self.wire.framing(self.clock.rate()),
-            PortFrames::Mbap => Framing::Mbap,
+        match self.ports.carrier(port) {
+            Carrier::Serial | Carrier::Uart => self.wire.framing(self.clock.rate()),
+            Carrier::Tcp => Framing::Mbap,
         }
     }
 

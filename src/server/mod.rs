@@ -28,7 +28,6 @@ pub use input::{FileLibrary, is_path, plain, read_text};
 pub use line_server::{LineServer, Subscriber};
 pub use logger::{LogFormat, Logger};
 pub use paths::PathClaims;
-pub use ports::PortFrames;
 pub use run::{Ended, Judged, Play, RunError, RunOptions, run};
 pub use store::Store;
 

@@ -1,7 +1,7 @@
 //! The ports of one line: which of them has something to tell, and on which link each of their masters speaks.
 
 use super::port::{ClientId, INPUT, Port, PortEvent};
-use crate::bus::LinkId;
+use crate::bus::{Carrier, LinkId};
 use crate::event::PortSettings;
 use crate::serial::Settings;
 use std::collections::BTreeMap;
@@ -11,15 +11,6 @@ use std::task::Poll;
 /// Which port of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PortId(usize);
-
-/// How frames are told apart at a port.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PortFrames {
-    /// As the line is set.
-    Serial,
-    /// Modbus TCP.
-    Mbap,
-}
 
 /// The ports of a line.
 #[derive(Debug, Default)]
@@ -34,7 +25,7 @@ pub struct Ports {
 #[derive(Debug)]
 struct OpenPort {
     port: Box<dyn Port>,
-    frames: PortFrames,
+    carrier: Carrier,
     /// How its master had set its end when that was told last.
     told: Option<PortSettings>,
     /// Nothing will come there any more.
@@ -43,8 +34,8 @@ struct OpenPort {
 
 impl Ports {
     /// One more.
-    pub fn add(&mut self, port: Box<dyn Port>, frames: PortFrames) -> PortId {
-        self.all.push(OpenPort { port, frames, told: None, ended: false });
+    pub fn add(&mut self, port: Box<dyn Port>, carrier: Carrier) -> PortId {
+        self.all.push(OpenPort { port, carrier, told: None, ended: false });
         PortId(self.all.len() - 1)
     }
 
@@ -79,9 +70,9 @@ impl Ports {
         self.all.iter().all(|it| it.ended)
     }
 
-    /// How frames are told apart at `port`.
-    pub fn frames(&self, port: PortId) -> PortFrames {
-        self.all[port.0].frames
+    /// What carries the bytes of `port`.
+    pub fn carrier(&self, port: PortId) -> Carrier {
+        self.all[port.0].carrier
     }
 
     /// The master `client` speaks on `link` from now on.
@@ -138,5 +129,38 @@ impl Ports {
     pub fn is_news(&mut self, port: PortId, now: PortSettings) -> bool {
         let told = self.all[port.0].told.replace(now);
         told != Some(now) && (!now.fits() || told.is_some_and(|told| !told.fits()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::server::port::{MASTER, StreamPort};
+    use tokio::io::AsyncWriteExt;
+
+    /// Two ports that always have something: each has its turn.
+    #[tokio::test]
+    async fn no_port_keeps_another_waiting() {
+        let mut ports = Ports::default();
+        let mut masters = Vec::new();
+        for _ in 0..2 {
+            let (mut master, ours) = tokio::io::duplex(8 * INPUT);
+            master.write_all(&[0; 4 * INPUT]).await.unwrap();
+            ports.add(Box::new(StreamPort::new(ours)), Carrier::Serial);
+            masters.push(master);
+        }
+        let mut input = [0; INPUT];
+        for turn in 0..8 {
+            let (port, event) = ports.next(&mut input).await;
+            assert_eq!(port, PortId(turn % 2));
+            assert!(matches!(event, PortEvent::Bytes { from: MASTER, .. }), "{event:?}");
+        }
+        drop(masters);
+        for _ in 0..2 {
+            assert!(!ports.have_ended());
+            let (_, event) = ports.next(&mut input).await;
+            assert!(matches!(event, PortEvent::Ended(Ok(()))), "{event:?}");
+        }
+        assert!(ports.have_ended());
     }
 }

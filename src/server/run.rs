@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::destination::Destination;
-use super::endpoints::{Ready, introduce, open};
+use super::endpoints::{Endpoint, Ready, introduce, open};
 use super::inbox::LineHandle;
 use super::input::plain;
 use super::line_server::LineServer;
@@ -142,7 +142,7 @@ fn open_all(
     options: &RunOptions,
 ) -> Result<Stop, RunError> {
     let stop = Stop::listen().map_err(RunError::Signals)?;
-    let mut endpoints = Vec::new();
+    let mut endpoints: Vec<Vec<Endpoint>> = Vec::new();
     for (line, server) in bench.lines.iter().zip(lines) {
         outputs.attach(server);
         endpoints.push(open(line, server, &options.base).map_err(RunError::Port)?);
@@ -150,7 +150,8 @@ fn open_all(
     // Whoever is told that the run is ready may look into it.
     outputs.save()?;
     info!("seed {}", options.seed);
-    bench.lines.iter().zip(&endpoints).for_each(|(line, endpoint)| introduce(line, endpoint));
+    bench.lines.iter().zip(&endpoints).for_each(|(line, endpoints)| introduce(line, endpoints));
+    let endpoints = endpoints.into_iter().flatten().collect();
     outputs.ready(&Ready { seed: options.seed, endpoints })?;
     Ok(stop)
 }

@@ -30,8 +30,9 @@
 
 use super::Rig;
 use super::rig::InUse;
+use crate::bus::Carrier;
 use crate::server::port::{MASTER, StreamPort};
-use crate::server::{Clock, LineHandle, LineServer, Logger, PortFrames};
+use crate::server::{Clock, LineHandle, LineServer, Logger};
 use std::future::Future;
 use std::io;
 use std::path::Path;
@@ -80,7 +81,7 @@ fn served(
         let mut line = LineServer::new(name, bus, wire, clock, inbox).with_director(director);
         log.into_iter().for_each(|log| line.subscribe(log));
         let port = Box::new(StreamPort::new(drive));
-        line.open_for(port, PortFrames::Serial, MASTER, link);
+        line.open_for(port, Carrier::Serial, MASTER, link);
         line.serve().await
     };
     (master, handle, serve)

@@ -1,10 +1,10 @@
 //! One line with drives and a clock that moves only when told to.
 
 use crate::bench::{
-    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, LineBuilder, Saved, StateFile,
-    WireSpec,
+    Bench, BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, LineBuilder, PortSpec, Saved,
+    StateFile, WireSpec,
 };
-use crate::bus::{Bus, Command, CommandError, LineCommand, LinkId, Output};
+use crate::bus::{Bus, Carrier, Command, CommandError, LineCommand, LinkId, Output};
 use crate::drive::View;
 use crate::event::{DriveId, Event};
 use crate::line::Framing;
@@ -194,7 +194,7 @@ impl Rig {
     fn off(line: BenchLine) -> Self {
         let framing = line.wire.framing(1.0);
         let mut bus = Bus::new();
-        let link = bus.open(framing);
+        let link = open(&mut bus, &line, framing);
         Self {
             line,
             framing,
@@ -213,7 +213,7 @@ impl Rig {
     /// Switches it on, with all that it is set up with, at the beginning of time, and waits until it is ready.
     fn switched_on(self) -> Self {
         let (mut bus, director) = (self.fresh_bus(), self.scenario.clone());
-        let link = bus.open(self.framing);
+        let link = open(&mut bus, &self.line, self.framing);
         let (now, events, log) = (Instant::ZERO, Vec::new(), Vec::new());
         let mut rig = Self { bus, director, link, now, events, log, ..self };
         let ready = rig.line.devices.iter().map(|device| device.model.wiring.servo.ready_after);
@@ -401,5 +401,13 @@ impl Rig {
             }
         }
         sent
+    }
+}
+
+/// Opens a link for the master of a test, which stands at the first port of `line`.
+fn open(bus: &mut Bus, line: &BenchLine, framing: Framing) -> LinkId {
+    match line.ports.first().map(PortSpec::carrier) {
+        Some(Carrier::Uart) => bus.open_on(Carrier::Uart, framing),
+        _ => bus.open(framing),
     }
 }

@@ -126,8 +126,9 @@ mod pseudo_terminal {
 
     fn serve_drive() -> PathBuf {
         use drivemu::bench::{Device, WireSpec};
+        use drivemu::bus::Carrier;
         use drivemu::server::port::TtyPort;
-        use drivemu::server::{Clock, LineHandle, LineServer, PortFrames};
+        use drivemu::server::{Clock, LineHandle, LineServer};
         serve(|path| async move {
             let model = Builtin::find(Builtin::default_name()).expect("the default model");
             let model = model.load(&Default::default()).expect("a valid model");
@@ -141,7 +142,7 @@ mod pseudo_terminal {
             path.send(opened.into()).expect("somebody waits");
             let (_handle, inbox) = LineHandle::new();
             let mut line = LineServer::new("line".into(), bus, wire, Clock::start(1.0), inbox);
-            line.open(Box::new(port), PortFrames::Serial);
+            line.open(Box::new(port), Carrier::Serial);
             line.serve().await.expect("it does not end");
         })
     }

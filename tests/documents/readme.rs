@@ -13,7 +13,7 @@ use drivemu::testkit::transcript;
 fn the_benches_are_valid() {
     let texts = fenced(&read(&root("README.md")), "yaml");
     let benches: Vec<_> = texts.iter().filter(|it| it.starts_with("lines:")).collect();
-    assert_eq!(benches.len(), 2);
+    assert_eq!(benches.len(), 3);
     for text in benches {
         let problems = parse(text, &BuiltinLibrary).err().unwrap_or_default();
         assert!(problems.is_empty(), "{}", render(&problems, "README.md", text));

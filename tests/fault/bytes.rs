@@ -212,7 +212,7 @@ fn ascii_has_an_lrc_and_seven_bits() {
 fn tcp_keeps_its_header() {
     let with = |spec: &str| {
         let mut line = line_of(text_of("hcfa-x"), &[], &DeviceSpec::default());
-        line.port = PortSpec::Tcp("127.0.0.1:0".into());
+        line.ports = vec![PortSpec::Tcp("127.0.0.1:0".into())];
         line.add_fault(spec).unwrap_or_else(|problems| panic!("{}", problems[0]));
         let mut bus = line.bus(0);
         let link = bus.open(Framing::Mbap);

@@ -3,7 +3,6 @@
 use super::{ANSWER, Bench, MS, READ, characters, frame};
 use crate::expect::{read, root};
 use drivemu::bus::{Output, WakeReason};
-use drivemu::medium::Pacing;
 use drivemu::time::Duration;
 use drivemu::wire::{ascii, rtu};
 
@@ -88,7 +87,6 @@ fn a_request_ends_with_its_last_byte() {
 #[test]
 fn a_serial_port_takes_the_time_itself() {
     let mut bench = Bench::new("serial: /dev/none, pacing: line, drives: [{model: hcfa-x}]");
-    assert_eq!(bench.bus.line_behaviour().pacing, Pacing::Port);
     assert_eq!(bench.ask(READ), [(Duration::from_nanos(6_010_417), frame(ANSWER))]);
 }
 

@@ -101,7 +101,7 @@ fn a_log_that_nobody_reads_stops_nobody() {
 }
 
 /// A cable whose other end is at `device`: the master of a pseudo-terminal, linked there.
-fn plug_in(device: &Path) -> File {
+pub fn plug_in(device: &Path) -> File {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     // Other tests start programs at the same time; none of them may keep this end of the cable.
     let kept = OpenptFlags::from_bits_retain(rustix::fs::OFlags::CLOEXEC.bits());

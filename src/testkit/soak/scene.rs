@@ -55,7 +55,7 @@ impl Scene {
 
     /// Does it carry Modbus TCP?
     pub fn is_tcp(&self) -> bool {
-        self.line.port.is_tcp()
+        !self.line.is_serial()
     }
 
     /// How frames are told apart on a line that is set to `wire`.
