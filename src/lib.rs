@@ -17,32 +17,62 @@
 //!
 //! `docs/ARCHITECTURE.md` draws the map of its modules.
 
-pub mod bank;
-pub mod behaviour;
+#![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports))]
+
 pub mod bench;
 pub mod bus;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
 pub mod drive;
 pub mod event;
 pub mod line;
-pub mod log;
 pub mod medium;
 pub mod model;
 pub mod motion;
 pub mod problem;
-pub mod rng;
 pub mod scenario;
 pub mod serial;
-#[cfg(feature = "cli")]
-pub mod server;
 pub mod testkit;
-pub mod text;
 pub mod time;
-pub mod units;
 pub mod vocabulary;
 pub mod wire;
+
+/// Modules that no signature of the public surface needs. The tests, benchmarks and fuzz targets of this package, which
+/// are crates of their own, see them with feature `internals`.
+macro_rules! internal {
+    ($($(#[$cfg:meta])* mod $name:ident;)*) => {$(
+        #[cfg(feature = "internals")]
+        #[doc(hidden)]
+        $(#[$cfg])*
+        pub mod $name;
+        #[cfg(not(feature = "internals"))]
+        $(#[$cfg])*
+        pub(crate) mod $name;
+    )*};
+}
+
+internal! {
+    mod bank;
+    mod behaviour;
+    #[cfg(feature = "cli")]
+    mod cli;
+    mod log;
+    mod rng;
+    #[cfg(feature = "cli")]
+    mod server;
+    mod text;
+    mod units;
+}
+
+/// The program `drivemu`: reads the command line, does what it says, returns the exit code.
+#[cfg(feature = "cli")]
+pub fn main() -> std::process::ExitCode {
+    cli::main()
+}
+
+pub use bench::Bench;
+pub use bus::{Bus, Command};
+pub use event::Event;
+pub use model::Model;
+pub use testkit::Rig;
 
 /// The README's Rust is tested with everything else.
 #[cfg(doctest)]

@@ -1,5 +1,5 @@
 //! The program. Everything, its command line too, is in the library.
 
 fn main() -> std::process::ExitCode {
-    drivemu::cli::main()
+    drivemu::main()
 }
