@@ -1,8 +1,7 @@
-//! `drivemu check`: every problem of every file.
+//! `drivemu check` and `drivemu schema`: every problem of every file, and the schema of the file formats.
 
-use super::args::CheckArgs;
-use super::output::{complain, print};
-use super::{CliError, INVALID};
+use super::args::{CheckArgs, SchemaArgs, SchemaFormat};
+use super::{CliError, FAILED, INVALID, complain, print};
 use crate::bench::{kind_of, parse};
 use crate::model::check as check_model;
 use crate::problem::Problem;
@@ -49,4 +48,15 @@ fn problems(file: &Path, text: &str) -> (&'static str, Vec<Problem>) {
     }
     let problems = if kind == "scenario" { check_scenario(text) } else { check_model(text) };
     (kind, problems)
+}
+
+pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
+    let schema = match args.format {
+        SchemaFormat::Model => crate::model::raw::schema(),
+        SchemaFormat::Scenario => crate::scenario::raw::schema(),
+        SchemaFormat::Bench => crate::bench::raw::schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema);
+    let text = text.map_err(|error| CliError { code: FAILED, text: error.to_string() })?;
+    print(&format!("{text}\n"))
 }

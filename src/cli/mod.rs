@@ -5,18 +5,16 @@
 
 mod args;
 mod check;
-mod models;
-mod output;
 mod run;
-mod schema;
 mod show;
 mod state;
 
-use crate::server::{plain, said};
+use crate::server::{plain, said, say};
 use args::{Args, CliCommand};
 use clap::Parser;
-use std::io::ErrorKind;
 use std::process::ExitCode;
+use crate::text::lines;
+use std::io::{ErrorKind, Write, stdout};
 
 /// The run failed.
 const FAILED: u8 = 1;
@@ -46,7 +44,7 @@ pub fn main() -> ExitCode {
     let code = match result {
         Ok(()) => 0,
         Err(CliError { code, text }) => {
-            output::complain(&text);
+            complain(&text);
             code
         }
     };
@@ -57,10 +55,10 @@ pub fn main() -> ExitCode {
 fn act(command: CliCommand) -> Result<(), CliError> {
     match command {
         CliCommand::Run(args) => run::run(*args),
-        CliCommand::Models => models::models(),
+        CliCommand::Models => show::models(),
         CliCommand::Show(args) => show::show(&args),
         CliCommand::Check(args) => check::check(&args),
-        CliCommand::Schema(args) => schema::schema(&args),
+        CliCommand::Schema(args) => check::schema(&args),
     }
 }
 
@@ -75,4 +73,25 @@ fn usage(error: &clap::Error) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Prints to stdout. A reader that went away (`| head`) is no failure.
+fn print(text: &str) -> Result<(), CliError> {
+    let printed = stdout().write_all(lines(text).as_bytes()).and_then(|()| stdout().flush());
+    match printed {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError {
+            code: FAILED,
+            text: format!("cannot write to stdout: {}", plain(&error)),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Says what went wrong, on stderr. Where that can't be said, nobody is told.
+fn complain(text: &str) {
+    if text.is_empty() {
+        return;
+    }
+    let end = if text.ends_with('\n') { "" } else { "\n" };
+    say(&format!("{}{end}", lines(text)));
 }

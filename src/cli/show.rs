@@ -1,8 +1,7 @@
-//! `drivemu show`: the register map, or one row of it.
+//! `drivemu show` and `drivemu models`: register maps, rows, and what is built in.
 
-use super::CliError;
+use super::{CliError, FAILED, print};
 use super::args::{ShowArgs, TableFormat};
-use super::output::print;
 use crate::bench::Library;
 use crate::model::{
     Access, Applies, Choices, Counts, Model, Number, Reaction, Row, RowId, RowKind, Shows,
@@ -12,6 +11,7 @@ use crate::problem::render::render;
 use crate::server::FileLibrary;
 use crate::vocabulary::Named;
 use serde_json::{Value, json};
+use crate::model::builtin::Builtin;
 
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     let (file, text) = FileLibrary::new("").fetch(&args.model).map_err(CliError::invalid)?;
@@ -341,4 +341,28 @@ fn kept(model: &Model, row: &Row) -> String {
         (_, false, None) if stores => "when all parameters are stored".into(),
         _ => "never".into(),
     }
+}
+
+pub fn models() -> Result<(), CliError> {
+    for builtin in Builtin::all() {
+        let model = builtin.load(&Choices::new()).map_err(|problems| {
+            let text = format!("{} is broken: {}", builtin.file, problems[0]);
+            CliError { code: FAILED, text }
+        })?;
+        let default = if model.name == Builtin::default_name() { " (default)" } else { "" };
+        print(&format!("{}{default}\n    {}\n", model.name, model.about))?;
+        print(&format!("    manual: {}\n", model.manual))?;
+        if !model.products.is_empty() {
+            print(&format!("    products: {}\n", model.products.join(", ")))?;
+        }
+        for option in &model.options {
+            let choices = option.choices.iter().map(|choice| match *choice == option.default {
+                true => format!("[{choice}]"),
+                false => choice.clone(),
+            });
+            let choices = choices.collect::<Vec<_>>().join(" | ");
+            print(&format!("    --set {}={choices}\n        {}\n", option.name, option.about))?;
+        }
+    }
+    print("[A choice in brackets] is the default of its option.\n")
 }

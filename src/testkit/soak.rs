@@ -24,13 +24,11 @@
 //! A failure says its seed as `SOAK_SEED=...`, and what is left of the steps when all that can be are left
 //! out. With that variable set, [`seeds`] gives this seed alone.
 
-mod axes;
 mod draw;
 mod master;
 mod play;
 mod replies;
 mod routine;
-mod rows;
 mod scene;
 mod step;
 

@@ -5,30 +5,24 @@
 
 mod action;
 mod alarm;
-mod cause;
 mod homing;
 mod quantity;
 mod refusal;
 mod segment;
 mod setting;
 mod signal;
-mod taken;
-mod threshold;
 
 pub use action::{Action, Modifier, Modifiers};
 pub use alarm::{AlarmCause, AlarmCauses};
-pub use cause::Cause;
 pub use homing::{
     HomeEnd, HomeStarter, HomingStep, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS,
     Method, OriginPosition, OriginStop, Pace, SignalEdge, SoftLimitRule, Steps, Then, Until,
 };
-pub use quantity::Quantity;
-pub use refusal::{Detail, Refusal, RowId};
+pub use quantity::{Quantity, Threshold};
+pub use refusal::{Cause, Detail, Refusal, RowId};
 pub use segment::{Condition, InhibitRule, InterruptRule, Lasts, Target};
-pub use setting::Setting;
+pub use setting::{Setting, Taken};
 pub use signal::{Input, Inputs, Output, Outputs};
-pub use taken::Taken;
-pub use threshold::Threshold;
 
 /// A word with a name in files and a line of explanation: what the catalogue prints.
 pub trait Named: Copy + 'static {

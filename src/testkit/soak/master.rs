@@ -1,9 +1,16 @@
-//! The master of a soak test: requests that make sense, requests that almost do, and others.
+//! The master of a soak test: requests that make sense, requests that almost do, and what they may do to rows.
 
 use super::draw::Draws;
+use super::replies::SoakEvent;
 use super::scene::Scene;
+use crate::bank::word_of;
+use crate::bus::Bus;
+use crate::drive::Drive;
+use crate::event::{DriveId, What};
+use crate::model::{Access, Located, WordOrder};
 use crate::model::{Model, Row, RowId, SettingRow};
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
+use crate::wire::{Pdu, Request};
 
 /// A request: to whom, and what.
 pub fn request(scene: &Scene, draws: &mut Draws) -> (u8, Vec<u8>) {
@@ -134,4 +141,58 @@ fn value(row: &Row, draws: &mut Draws) -> i64 {
         4..7 => draws.signed(low, high.min(low.saturating_add(600))),
         _ => draws.signed(low, high),
     }
+}
+
+/// Did anything happen in this call that may change rows?
+pub fn may_change(seen: &[SoakEvent]) -> bool {
+    seen.iter().any(|it| match it {
+        SoakEvent::Told(What::Drive { .. }) => true,
+        SoakEvent::Told(what) => accepted(what).is_some(),
+        SoakEvent::Frame(_) => false,
+    })
+}
+
+/// The drive and the request, if `what` is a write that a drive has accepted.
+fn accepted(what: &What) -> Option<(DriveId, &Pdu)> {
+    let (drive, request) = match what {
+        What::Transaction(it) if it.refusal.is_none() => (it.drive, &it.request),
+        What::Broadcast { drive, request, refusal: None, .. } => (*drive, request),
+        _ => return None,
+    };
+    (request.first() != Some(&crate::wire::function::READ)).then_some((drive, request))
+}
+
+/// If the call was one write that was accepted and set nothing off, then the drive holds all that was written.
+pub fn written(seen: &[SoakEvent], bus: &Bus) -> Result<(), String> {
+    let set_off = |it: &&SoakEvent| matches!(it, SoakEvent::Told(What::Drive { .. }));
+    let mut writes = seen.iter().filter_map(|it| match it {
+        SoakEvent::Told(what) => accepted(what),
+        SoakEvent::Frame(_) => None,
+    });
+    match (writes.next(), writes.next(), seen.iter().find(set_off)) {
+        (Some((id, request)), None, None) => holds(bus.drive(id), request),
+        _ => Ok(()),
+    }
+}
+
+/// Does the drive hold what `request` wrote, where rows simply hold it?
+fn holds(drive: &Drive, request: &[u8]) -> Result<(), String> {
+    let model = drive.model();
+    let (span, values) = match Request::parse(request, model.line.length_check) {
+        Ok(Request::WriteOne { address, value }) => (crate::wire::Span::one(address), value),
+        Ok(Request::WriteMany { span, values }) => (span, values),
+        _ => return Ok(()),
+    };
+    for (i, address) in span.addresses().enumerate() {
+        let Located::Word { row: id, word, .. } = model.map.locate(address) else { continue };
+        let row = model.map.row(id);
+        // Words of a pair lie as the order was before the write.
+        let fixed = matches!(model.line.word_order, WordOrder::Fixed(_)) || row.order.is_some();
+        let plain = !row.clears && row.access == Access::Both && (fixed || row.kind.words() == 1);
+        let got = word_of(row, drive.bank().order(model, row), drive.bank().raw(id), word);
+        if plain && values.get(i) != Some(got) {
+            return Err(format!("0x{address:04X} holds {got} and not what was written"));
+        }
+    }
+    Ok(())
 }
