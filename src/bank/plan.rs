@@ -30,7 +30,7 @@ impl ReadPlan {
         self,
         bank: &Bank,
         model: &Model,
-        show: impl Fn(RowId) -> u32,
+        mut show: impl FnMut(RowId) -> u32,
         into: &mut [u16; 125],
     ) -> usize {
         let mut shown: Option<(RowId, u32)> = None;

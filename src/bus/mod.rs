@@ -19,7 +19,7 @@ pub use command::{BETWEEN_EDGES, Command, CommandError, DriveOrder, LineCommand,
 pub use output::{Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
 
-use crate::drive::{Drive, Setup, View};
+use crate::drive::{Drive, DriveEffect, Setup, View};
 use crate::event::{Change, DriveId, Event, PortSettings, Remark, RemarkId, Transaction, What};
 use crate::line::{Framing, Line};
 use crate::medium::{
@@ -448,11 +448,15 @@ impl Bus {
         if self.stations.drive_mut(id).take_restart() {
             self.switch(id, Drive::power_cycle);
         }
-        while let Some(timer) = self.stations.drive_mut(id).poll_woken() {
-            self.wakes.note(Wake { at: self.now, reason: WakeReason::Drive(id, timer) });
-        }
         let mut moved = false;
-        while let Some(change) = self.stations.drive_mut(id).poll_change() {
+        while let Some(effect) = self.stations.drive_mut(id).poll_effect() {
+            let change = match effect {
+                DriveEffect::Changed(change) => change,
+                DriveEffect::Woken(timer) => {
+                    self.wakes.note(Wake { at: self.now, reason: WakeReason::Drive(id, timer) });
+                    continue;
+                }
+            };
             moved |= matches!(
                 change,
                 Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn | Change::PoweredOff

@@ -1,11 +1,12 @@
 //! How a drive is spoken to: its unit address, how it talks, and how long a master may be silent.
 
-use crate::bank::Bank;
+use super::registers::Registers;
+use super::timer::Timer;
 use crate::behaviour::Watchdog;
 use crate::event::Change;
-use crate::model::{Applies, Model, WireFormat};
+use crate::model::{Applies, WireFormat};
 use crate::serial::{Mode, Settings};
-use crate::time::{Duration, Instant};
+use crate::time::Instant;
 
 /// What a drive answers to, and when it gives its master up.
 #[derive(Debug)]
@@ -40,10 +41,10 @@ impl Comms {
     }
 
     /// Power comes on: what switches and parameters ask for is in force. Returns the change of a mode that there was before.
-    pub(super) fn power_on(&mut self, model: &Model, bank: &Bank) -> Option<Change> {
+    pub(super) fn power_on(&mut self, registers: &Registers) -> Option<Change> {
         self.silence.stop();
-        self.unit = self.unit_asked_for(model, bank);
-        let mode = self.mode_asked_for(model, bank);
+        self.unit = self.unit_asked_for(registers);
+        let mode = self.mode_asked_for(registers);
         let from = std::mem::replace(&mut self.mode, mode);
         (from.is_some() && from != mode).then_some(Change::Mode { from, to: mode })
     }
@@ -54,26 +55,27 @@ impl Comms {
     }
 
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on. Returns what has changed.
-    pub(super) fn follow_settings(&mut self, model: &Model, bank: &Bank) -> [Option<Change>; 2] {
-        let line = &model.line;
-        let waits = |row| model.map.row(row).applies == Some(Applies::PowerOn);
+    pub(super) fn follow_settings(&mut self, registers: &Registers) -> [Option<Change>; 2] {
+        let line = &registers.model().line;
+        let waits = |row| registers.model().map.row(row).applies == Some(Applies::PowerOn);
         let mode_waits = waits(line.baud.row) || waits(line.format.row);
-        let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for(model, bank) };
-        let mode = if mode_waits { self.mode } else { self.mode_asked_for(model, bank) };
+        let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for(registers) };
+        let mode = if mode_waits { self.mode } else { self.mode_asked_for(registers) };
         let from = std::mem::replace(&mut self.unit, unit);
         let moved = (from != unit).then_some(Change::Unit { from, to: unit });
         let from = std::mem::replace(&mut self.mode, mode);
         [moved, (from != mode).then_some(Change::Mode { from, to: mode })]
     }
 
-    /// A master spoke: from `now` on it has `time` to speak again, or for ever.
-    pub(super) fn hear(&mut self, now: Instant, time: Option<Duration>) {
-        self.silence.refresh(now, time);
+    /// A master spoke: from `now` on it has the time that a row says to speak again, or for ever.
+    pub(super) fn on_request(&mut self, now: Instant, registers: &Registers) {
+        let rule = registers.model().wiring.timeout.as_ref();
+        self.silence.refresh(now, registers.hold_time(rule));
     }
 
     /// When the master will have been silent for too long.
-    pub(super) fn silent_at(&self) -> Option<Instant> {
-        self.silence.deadline()
+    pub(super) fn timer(&self) -> Option<(Instant, Timer)> {
+        self.silence.deadline().map(|at| (at, Timer::MasterSilence))
     }
 
     /// Has no master spoken in time? The next one who does starts the time anew.
@@ -82,9 +84,9 @@ impl Comms {
     }
 
     /// The unit address that switches and parameters ask for.
-    fn unit_asked_for(&self, model: &Model, bank: &Bank) -> u8 {
-        let rule = &model.line.unit;
-        let register = bank.value(model, rule.row);
+    fn unit_asked_for(&self, registers: &Registers) -> u8 {
+        let rule = &registers.model().line.unit;
+        let register = registers.value(rule.row);
         let switches = self.switches & ((1u16 << rule.switches) - 1) as u8;
         match (switches, u8::try_from(register).unwrap_or(0)) {
             (0, 0) => rule.zero,
@@ -94,16 +96,16 @@ impl Comms {
     }
 
     /// The mode that the parameters ask for, or the switches in place of them.
-    fn mode_asked_for(&self, model: &Model, bank: &Bank) -> Option<Mode> {
-        let line = &model.line;
+    fn mode_asked_for(&self, registers: &Registers) -> Option<Mode> {
+        let line = &registers.model().line;
         let (baud, format) = match line.baud_switches {
             0 => (
-                line.baud.decode(bank.value(model, line.baud.row)),
-                line.format.decode(bank.value(model, line.format.row)),
+                line.baud.decode(registers.value(line.baud.row)),
+                line.format.decode(registers.value(line.format.row)),
             ),
             _ => {
                 let code = i64::from(self.switches >> line.unit.switches);
-                let row = model.map.row(line.format.row);
+                let row = registers.model().map.row(line.format.row);
                 let factory = line.format.decode(row.kind.value(row.init));
                 (line.baud.codes.get(&code).copied(), factory)
             }

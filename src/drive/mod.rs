@@ -1,214 +1,160 @@
 //! One station of a drive: the only place that sees registers and behaviours.
 //!
-//! It keeps the time up to which everything has happened to it; a position is that of this instant.
-//! A request becomes a plan, the plan is committed, and what the written rows are wired to reacts
-//! (`react.rs`). What a row shows is computed when somebody looks (`show.rs`). It knows no bytes on a line and no
-//! other drive.
+//! It is made of parts that own their fields and their deadlines: registers, comms, input signals, power stage, axis, device
+//! faults, and what was told of orders without effect. What they share at an instant is handed to them
+//! (`context.rs`), and what comes of it goes into one queue. A request becomes a plan, the plan is committed, and what
+//! the written rows are wired to follows (`orders.rs`, `parts.rs`). What a row shows is computed when somebody looks
+//! (`view.rs`). It knows no bytes on a line and no other drive.
 
-mod alarms;
+mod acts;
+mod axis;
 mod comms;
-mod course;
+mod context;
 mod device_faults;
-mod gear;
-mod home;
-mod interrupt;
-mod issued;
-mod levels;
-mod memory;
-mod motion;
-mod next_time;
+mod effects;
+mod inputs;
 mod no_effect;
-mod not_simulated;
-mod react;
-mod segments;
-mod settings;
+mod orders;
+mod outputs;
+mod parts;
+mod registers;
 mod setup;
-mod show;
-mod signals;
 mod timer;
 mod view;
-mod windows;
 
-pub use issued::IssuedCommand;
-pub use setup::Setup;
+pub use effects::DriveEffect;
+pub use setup::{IssuedCommand, Setup};
 pub use timer::Timer;
 pub use view::View;
 
-use crate::bank::{Bank, Causes, Gate, word_of};
-use crate::behaviour::{Chain, LevelControl, Motor, PowerControl, PowerStage, Watchdog};
-use crate::event::{Change, Ignored, Ordered};
-use crate::model::{Located, Model};
+use crate::bank::{Bank, Causes, Gate, Kept};
+use crate::behaviour::{CommandControl, LevelControl, PowerControl, PowerStage};
+use crate::event::{Change, DeviceFault, Ignored, Ordered};
+use crate::model::{Model, Shows};
+use crate::motion::first_equal;
 use crate::serial::Mode;
-use crate::time::Instant;
-use crate::vocabulary::{Action, AlarmCause, Cause, Detail, Inputs, Modifiers, Refusal};
+use crate::time::{Duration, Instant};
+use crate::units::Unit;
+use crate::vocabulary::{Action, AlarmCause, Cause, Detail, Refusal, RowId};
 use crate::wire::{Request, Response, Span, Words};
-use comms::Comms;
-use course::Course;
-use device_faults::DeviceFaults;
-use interrupt::Interrupt;
-use levels::Velocity;
-use memory::Memory;
-use no_effect::NoEffect;
-use settings::Moment;
-use std::cell::Cell;
-use std::collections::VecDeque;
+use device_faults::FrozenFeedback;
+use parts::{Parts, Update};
+use std::cmp::Ordering;
 use std::sync::Arc;
-use timer::Sleeper;
+use timer::TimerOwner;
 
 /// One station of a drive.
 #[derive(Debug)]
 pub struct Drive {
-    model: Arc<Model>,
-    station: usize,
-    /// Up to here everything has happened.
-    now: Instant,
-    /// Values that the bench gave it; they survive a factory reset no more than a real user's do.
-    bank: Bank,
-    memory: Memory,
-    /// Has it supply?
-    powered: bool,
-    device_faults: DeviceFaults,
-    power_stage: PowerStage,
-    /// Watchdogs of the input words.
-    word_watchdogs: Vec<Watchdog>,
-    comms: Comms,
-    /// Signals on the input terminals, bit by bit.
-    terminals: u16,
-    inputs: Inputs,
-    motor: Motor,
-    /// What the motion under way goes by.
-    course: Option<Course>,
-    /// The values of settings that count, by slot, as far as they are not live: in the base unit of each.
-    taken: Vec<f64>,
-    /// Counts for one revolution: what the row says when the axis stands.
-    counts_per_rev: f64,
-    /// The velocity segment that is active.
-    velocity: Option<Velocity>,
-    /// Number of the position segment that started last.
-    segment: u16,
-    chain: Chain,
-    interrupt: Interrupt,
-    /// Do its positive counts go the machine's negative way? Then so do those of its motor.
-    reversed: bool,
-    /// Where the motor is when the position register says 0.
-    zero: i64,
-    /// Revolutions of the encoder when its turns were cleared; a battery keeps them over power-off.
-    cleared_turns: i64,
-    /// Has an origin been found since power came on?
-    home_done: bool,
-    /// Number of the last homing method.
-    method: i64,
-    /// Has the power stage not been on since power came on?
-    never_enabled: bool,
-    /// What the position is called whenever power comes on: there is no absolute encoder.
-    position_at_power_on: i64,
-    /// What was told of orders that have no effect.
-    no_effect: NoEffect,
-    /// Functions that are not simulated and of which the log has told since power came on, as bits by index.
-    told_not_simulated: u64,
-    changes: VecDeque<Change>,
-    /// What has woken it, since somebody asked.
-    woken: VecDeque<Timer>,
-    /// A master has asked for a restart of the whole device, which only the bus knows.
-    restart: bool,
-    /// What the request under way has ordered.
-    issued: Option<IssuedCommand>,
+    parts: Parts,
     read: [u16; 125],
 }
 
 impl Drive {
     /// A drive of `model` as the bench sets it up, switched on at `now`.
     pub fn new(model: Arc<Model>, setup: &Setup, now: Instant) -> Self {
-        let mut bank = Bank::new(&model, setup.station);
-        bank.recall(&model, &setup.kept);
-        setup.values.iter().for_each(|(row, raw)| bank.preset(&model, *row, *raw));
-        let words = model.wiring.input_words.as_ref().map_or(0, |words| words.rows.len());
-        let mut drive = Self {
-            power_stage: PowerStage::power_on(
-                now,
-                Default::default(),
-                PowerControl::Levels(LevelControl::default()),
-            ),
-            word_watchdogs: vec![Watchdog::default(); words],
-            comms: Comms::new(setup.switches),
-            motor: Motor::standing(
-                now,
-                setup.start as f64,
-                model.wiring.axis.coast,
-                setup.machine,
-                None,
-            ),
-            course: None,
-            taken: vec![0.0; model.wiring.axis.slots.into()],
-            counts_per_rev: 1.0,
-            velocity: None,
-            segment: 0,
-            chain: Chain::default(),
-            interrupt: Interrupt::default(),
-            reversed: false,
-            zero: 0,
-            cleared_turns: 0,
-            home_done: false,
-            method: 0,
-            never_enabled: true,
-            no_effect: NoEffect::new(&model.wiring),
-            model,
-            station: setup.station,
-            now,
-            bank,
-            memory: Memory::default(),
-            powered: true,
-            device_faults: DeviceFaults::default(),
-            terminals: setup.terminals,
-            inputs: Inputs::default(),
-            position_at_power_on: setup.position,
-            told_not_simulated: 0,
-            changes: VecDeque::with_capacity(8),
-            woken: VecDeque::with_capacity(4),
-            restart: false,
-            issued: None,
-            read: [0; 125],
-        };
-        drive.power_on(now);
+        let mut drive = Self { parts: Parts::new(model, setup, now), read: [0; 125] };
+        drive.parts.powered = true;
+        drive.power_on();
         drive
     }
 
     /// The model.
     pub fn model(&self) -> &Arc<Model> {
-        &self.model
+        self.parts.registers.model()
     }
 
     /// Which station of its device, from 0.
     pub fn station(&self) -> usize {
-        self.station
+        self.parts.registers.station()
     }
 
     /// The unit address in force.
     pub fn unit(&self) -> u8 {
-        self.comms.unit()
+        self.parts.comms.unit()
     }
 
-    /// The values of its registers, for those who look from outside.
+    /// The cells of its registers, which do not hold what the drive computes.
     pub fn bank(&self) -> &Bank {
-        &self.bank
+        self.parts.registers.bank()
     }
 
-    /// The mode that it talks in. `None` where a parameter held a code that stands for nothing when it took
-    /// effect: such a drive hears nobody.
+    /// The unit of a row. That of a speed may be finer than the model says, where a row decides.
+    pub fn unit_of(&self, row: RowId) -> Unit {
+        self.parts.registers.unit_of(row)
+    }
+
+    /// What it keeps over power-off.
+    pub fn kept(&self) -> Kept {
+        self.parts.registers.kept()
+    }
+
+    /// Has something been stored since this was asked last?
+    pub fn take_stored(&mut self) -> bool {
+        self.parts.registers.take_unsaved()
+    }
+
+    /// The mode that it talks in. `None` where a parameter held an undefined code when it took effect: such a drive is
+    /// unreachable.
     pub fn mode(&self) -> Option<Mode> {
-        self.comms.mode()
+        self.parts.comms.mode()
+    }
+
+    /// Has it supply?
+    pub fn is_powered(&self) -> bool {
+        self.parts.powered
+    }
+
+    /// Has a master asked for a restart of the device since this was asked last?
+    pub fn take_restart(&mut self) -> bool {
+        std::mem::take(&mut self.parts.restart)
+    }
+
+    /// The order that the last request gave, if it gave one that does something each time.
+    pub fn issued(&self) -> Option<IssuedCommand> {
+        self.parts.issued
+    }
+
+    /// What has come out of it next, in order.
+    pub fn poll_effect(&mut self) -> Option<DriveEffect> {
+        self.parts.effects.pop()
+    }
+
+    /// The drive as it is at `now`: not before what has happened to it, and not after what will happen next by itself.
+    pub fn at(&self, now: Instant) -> View<'_> {
+        self.parts.at(now)
+    }
+
+    /// The first instant after `now` at which what `side` looks at is equal to what is waited for, before the next
+    /// deadline and if nobody asks the drive for anything meanwhile.
+    ///
+    /// A number is met to the count also where the axis only passes it. A signal that is on only while speed or deviation
+    /// pass through a window is missed where that takes less than a sixteenth of a ramp.
+    pub fn next_time_when(
+        &self,
+        now: Instant,
+        side: impl Fn(View<'_>) -> Ordering,
+    ) -> Option<Instant> {
+        let end = self.next_timer().map(|(at, _)| at);
+        let marks = self.parts.axis.at(self.parts.context(now)).marks();
+        let side = |at| side(self.at(at));
+        first_equal(now, &marks, side).filter(|at| end.is_none_or(|end| *at < end))
     }
 
     /// Answers a request that arrived at `now`, or says why not.
+    ///
+    /// # Errors
+    /// The refusal that the model puts first among all the causes that hold.
     pub fn request(&mut self, now: Instant, pdu: &[u8]) -> Result<Response<'_>, Refusal> {
         self.advance_to(now);
-        self.hear();
-        self.issued = None;
-        if let Some(function) = pdu.first().filter(|it| !self.model.line.functions.contains(it)) {
+        self.parts.on_request();
+        self.parts.issued = None;
+        let line = &self.parts.registers.model().line;
+        if let Some(function) = pdu.first().filter(|it| !line.functions.contains(it)) {
             let causes = Causes::of(Cause::Function, Detail::Function(*function));
             return Err(self.refuse(causes));
         }
-        match Request::parse(pdu, self.model.line.length_check) {
+        match Request::parse(pdu, line.length_check) {
             Ok(Request::Read(span)) => self.answer_read(span),
             Ok(Request::WriteOne { address, value }) => {
                 self.write(Span::one(address), value)?;
@@ -219,14 +165,46 @@ impl Drive {
                 Ok(Response::WriteMany(span))
             }
             Ok(Request::MaskWrite { address, masks }) => {
-                let word = masks.apply(self.held_word(address)).to_be_bytes();
+                let word = masks.apply(self.parts.registers.word_at(address)).to_be_bytes();
                 self.write(Span::one(address), Words::one(&word))?;
                 Ok(Response::MaskWrite { address, masks })
             }
-            Err(malformed) => {
-                Err(self.refuse(Causes::of_malformed(pdu, malformed, &self.model.line)))
-            }
+            Err(malformed) => Err(self.refuse(Causes::of_malformed(pdu, malformed, line))),
         }
+    }
+
+    fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
+        let (bank, model) = (self.parts.registers.bank(), self.parts.registers.model());
+        let plan = bank.plan_read(model, span)?;
+        let (view, mut read) = (self.at(self.parts.now), self.read);
+        let (dark, mut seen) = (self.parts.no_effect.dark(&self.parts.registers), 0);
+        let show = |row| {
+            if dark != 0
+                && let Some(Shows::OutputWord(word)) = model.wiring.shows(row)
+            {
+                seen |= dark & 1 << word;
+            }
+            view.show(row)
+        };
+        let len = plan.read(bank, model, show, &mut read);
+        self.read = read;
+        let (view, no_effect, out) = self.parts.split_no_effect();
+        no_effect.note_read(view.axis().context(), out, seen);
+        Ok(Response::Read(&self.read[..len]))
+    }
+
+    fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {
+        let gate = Gate { enabled: self.parts.power.is_enabled() };
+        let registers = &mut self.parts.registers;
+        let plan = registers.bank().plan_write(registers.model(), span, words, gate)?;
+        registers.commit(self.parts.now, &plan, &mut self.parts.effects);
+        self.parts.react(&plan);
+        Ok(())
+    }
+
+    fn refuse(&self, causes: Causes) -> Refusal {
+        let refusal = causes.refusal(&self.parts.registers.model().line.refuse);
+        refusal.expect("the model was checked: each cause that it can meet has a rung")
     }
 
     /// Trips with `cause` at `now`, if the model has an alarm for it.
@@ -234,107 +212,162 @@ impl Drive {
     /// Returns whether it has.
     pub fn raise(&mut self, now: Instant, cause: AlarmCause) -> bool {
         self.advance_to(now);
-        let tripped = self.trip_by(cause, Some(Ordered::Raise(cause)));
-        self.update_axis();
-        self.explain();
+        let tripped = self.parts.trip_by(cause, Some(Ordered::Raise(cause)));
+        self.parts.update(Update::Axis);
+        self.parts.report_inactive();
         tripped
     }
 
     /// Puts a signal on input terminal `index` at `now`, or takes it off.
     pub fn set_terminal(&mut self, now: Instant, index: u8, signal: bool) {
         self.advance_to(now);
-        let bit = 1 << index;
         let order = Ordered::Terminal { index, on: signal };
-        if (self.terminals & bit != 0) == signal {
-            return self.ignore(order, Ignored::AlreadySo);
+        if self.parts.inputs.terminal(index) == signal {
+            return self.parts.ignore(order, Ignored::AlreadySo);
         }
-        self.terminals ^= bit;
-        self.changes.push_back(Change::Terminal { index, signal });
-        let before = self.inputs;
-        self.gather_inputs();
-        if let Some(why) = self.why_no_signal(index, before) {
-            self.ignore(order, why);
+        self.parts.inputs.set_terminal(index, signal);
+        self.parts.effects.change(Change::Terminal { index, signal });
+        let before = self.parts.inputs.active();
+        self.parts.update(Update::Inputs);
+        if let Some(why) = acts::why_no_signal(self.at(self.parts.now), index, before) {
+            self.parts.ignore(order, why);
         }
-        self.explain();
+        self.parts.report_inactive();
+    }
+
+    /// Has the contact on input terminal `index` leave its level and come back so many `times`, each edge
+    /// `every` after the one before; both are above 0. One that bounces already begins anew.
+    pub fn bounce_terminal(&mut self, now: Instant, index: u8, times: u16, every: Duration) {
+        self.advance_to(now);
+        self.parts.effects.change(Change::Bounces { index, times, every });
+        self.parts.inputs.set_bounce(now, index, times, every);
+        self.advance_to(now);
+    }
+
+    /// Something is wrong from `now` on, or no longer.
+    ///
+    /// Returns whether that can be: a cause needs an alarm of the model.
+    pub fn set_device_fault(&mut self, now: Instant, device_fault: DeviceFault, on: bool) -> bool {
+        self.advance_to(now);
+        if let DeviceFault::Cause(cause) = device_fault
+            && self.model().wiring.alarm(cause).is_none()
+        {
+            return false;
+        }
+        let is_so = match device_fault {
+            DeviceFault::Blocked => self.parts.axis.is_blocked(),
+            DeviceFault::Stuck(index) => self.parts.inputs.is_stuck(index),
+            fault => self.parts.faults.has(fault),
+        };
+        if is_so != on {
+            self.parts.effects.change(Change::DeviceFault { device_fault, on });
+            self.change_device_fault(device_fault, on);
+            self.parts.report_axis(None);
+            self.parts.update(Update::Inputs);
+            self.parts.update(Update::Axis);
+            self.parts.report_inactive();
+        }
+        true
+    }
+
+    fn change_device_fault(&mut self, fault: DeviceFault, on: bool) {
+        match fault {
+            DeviceFault::Blocked => self.parts.axis.set_blocked(self.parts.now, on),
+            DeviceFault::Stuck(index) => {
+                let (axis, inputs, _) = self.parts.split_inputs();
+                inputs.set_stuck(axis, index, on);
+            }
+            fault => {
+                let cause = self.parts.faults.set(fault, on);
+                if let Some(cause) = cause.filter(|_| self.parts.powered) {
+                    self.parts.trip(cause);
+                }
+            }
+        }
+        let axis = self.parts.axis.at(self.parts.context(self.parts.now));
+        let seen = FrozenFeedback { position: axis.seen_position(), speed: axis.seen_speed() };
+        self.parts.faults.freeze(seen);
     }
 
     /// Power off and on. What moved stands.
     pub fn power_cycle(&mut self, now: Instant) {
         self.advance_to(now);
-        self.bank.power_cycle();
-        self.powered = true;
-        self.power_on(now);
+        self.parts.registers.power_cycle();
+        self.parts.powered = true;
+        self.power_on();
     }
 
-    /// Power off. What moved runs out, and nobody answers.
+    /// Power off. What moved coasts, and nobody answers.
     pub fn power_off(&mut self, now: Instant) {
         self.advance_to(now);
-        if !std::mem::take(&mut self.powered) {
+        if !std::mem::take(&mut self.parts.powered) {
             return;
         }
-        self.changes.push_back(Change::PoweredOff);
-        self.power_stage.power_off();
-        self.report_power_stage();
-        self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
-        self.comms.power_off();
-        self.chain.end();
-        self.motor.follow(now, Default::default());
-        self.tell_stages(None);
+        self.parts.effects.change(Change::PoweredOff);
+        self.parts.power.power_off();
+        self.parts.report_power();
+        self.parts.inputs.stop_words();
+        self.parts.comms.power_off();
+        self.parts.axis.power_off(now);
+        self.parts.report_axis(None);
     }
 
-    /// Has it supply?
-    pub fn is_powered(&self) -> bool {
-        self.powered
-    }
-
-    /// Has a master asked for a restart of the device since this was asked last?
-    pub fn take_restart(&mut self) -> bool {
-        std::mem::take(&mut self.restart)
-    }
-
-    /// The order that the last request gave, if it gave one that does something each time.
-    pub fn issued(&self) -> Option<IssuedCommand> {
-        self.issued
+    fn power_on(&mut self) {
+        self.parts.power.power_off();
+        self.parts.report_power();
+        self.parts.registers.power_on();
+        let control = power_control(self.parts.registers.model());
+        let ready_after = self.parts.registers.model().wiring.servo.ready_after;
+        self.parts.power = PowerStage::power_on(self.parts.now, ready_after, control);
+        let (cx, axis, _) = self.parts.split();
+        axis.power_on(cx);
+        self.parts.no_effect.power_on();
+        self.parts.inputs.stop_words();
+        // What is active from the start has not risen.
+        let active =
+            self.parts.inputs.gather(self.parts.axis.at(self.parts.context(self.parts.now)));
+        self.parts.inputs.set_active(active);
+        let moved = self.parts.comms.power_on(&self.parts.registers);
+        self.parts.effects.change(Change::PoweredOn);
+        moved.into_iter().for_each(|change| self.parts.effects.change(change));
+        self.parts.update(Update::Inputs);
+        self.parts.power.advance(self.parts.now);
+        self.parts.report_power();
+        self.parts.update(Update::Axis);
+        let (view, no_effect, _) = self.parts.split_no_effect();
+        no_effect.power_on_inputs(view);
     }
 
     /// Lets time pass up to `now`: every deadline until then happens at its own instant.
     pub fn advance_to(&mut self, now: Instant) {
         while let Some((at, _)) = self.next_timer().filter(|(at, _)| *at <= now) {
-            self.now = self.now.max(at);
-            Sleeper::ALL.into_iter().for_each(|part| self.wake(part));
-            self.update_axis();
-            self.advance_chain();
-            self.explain();
+            self.parts.now = self.parts.now.max(at);
+            TimerOwner::ALL.into_iter().for_each(|part| self.wake_if_due(part));
+            self.parts.update(Update::Axis);
+            // What happened may be what the chain waits for.
+            if self.parts.axis.chain_due_at().is_some_and(|at| at <= self.parts.now) {
+                self.parts.effects.woken(Timer::Chain);
+                self.parts.update(Update::Chain);
+            }
+            self.parts.report_inactive();
         }
-        self.now = self.now.max(now);
+        self.parts.now = self.parts.now.max(now);
     }
 
     /// Wakes `part` if it is due.
-    fn wake(&mut self, part: Sleeper) {
-        let due = |(at, timer): &(Instant, Timer)| *at <= self.now && timer.wakes() == Some(part);
-        let mut timers: Vec<_> = self.timers().filter(due).map(|(_, timer)| timer).collect();
-        if timers.is_empty() {
-            return;
+    fn wake_if_due(&mut self, part: TimerOwner) {
+        let mut last = None;
+        let is_due = |at: Instant, timer: Timer, last| {
+            at <= self.parts.now && timer.wakes() == Some(part) && Some(timer) > last
+        };
+        while let Some(timer) =
+            self.timers().filter(|(at, it)| is_due(*at, *it, last)).map(|(_, it)| it).min()
+        {
+            last = Some(timer);
+            self.parts.effects.woken(timer);
         }
-        timers.sort_unstable();
-        self.woken.extend(timers);
-        match part {
-            Sleeper::PowerStage => {
-                self.power_stage.advance(self.now);
-                self.report_power_stage();
-            }
-            Sleeper::Contacts => self.bounce(),
-            Sleeper::Switches => {
-                if self.motor.take_switch_edge(self.now) {
-                    self.gather_inputs();
-                }
-            }
-            Sleeper::Axis => {
-                self.motor.advance(self.now);
-                self.tell_stages(None);
-            }
-            Sleeper::InputWords => self.expire_words(),
-            Sleeper::Comms => self.end_silence(),
+        if last.is_some() {
+            self.parts.wake(part);
         }
     }
 
@@ -345,151 +378,28 @@ impl Drive {
 
     /// All its deadlines, in any order.
     fn timers(&self) -> impl Iterator<Item = (Instant, Timer)> {
-        let ready = self.power_stage.ready_at().map(|at| (at, Timer::Ready));
-        let axis = self.motor.timers().map(|(at, timer)| (at, Timer::Axis(timer)));
-        let chain = self.chain.deadline().map(|at| (at, Timer::Chain));
+        let ready = self.parts.power.ready_at().map(|at| (at, Timer::Ready));
+        let axis = self.parts.axis.timers().map(|(at, timer)| (at, Timer::Axis(timer)));
+        let chain = self.parts.axis.chain_due_at().map(|at| (at, Timer::Chain));
         let others = ready.into_iter().chain(axis).chain(chain);
-        others.chain(self.device_faults.timers()).chain(self.watchdogs())
-    }
-
-    /// What a master keeps from expiring.
-    fn watchdogs(&self) -> impl Iterator<Item = (Instant, Timer)> {
-        let words = (0u8..).map(Timer::HoldWord).zip(&self.word_watchdogs);
-        let words = words.filter_map(|(timer, word)| Some((word.deadline()?, timer)));
-        words.chain(self.comms.silent_at().map(|at| (at, Timer::MasterSilence)))
+        others.chain(self.parts.inputs.timers()).chain(self.parts.comms.timer())
     }
 
     /// When the first watchdog expires if the master says no more.
     pub fn watchdog_at(&self) -> Option<Instant> {
-        self.watchdogs().map(|(at, _)| at).min()
+        self.parts.inputs.word_timers().chain(self.parts.comms.timer()).map(|(at, _)| at).min()
     }
+}
 
-    /// The drive as it is at `now`: not before what has happened to it, and not after what will happen next by itself.
-    pub fn at(&self, now: Instant) -> View<'_> {
-        View::new(self, now)
-    }
-
-    /// The next change that has not been told yet.
-    pub fn poll_change(&mut self) -> Option<Change> {
-        self.changes.pop_front()
-    }
-
-    /// The next deadline that has woken it and that nobody was told of.
-    pub fn poll_woken(&mut self) -> Option<Timer> {
-        self.woken.pop_front()
-    }
-
-    fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
-        let plan = self.bank.plan_read(&self.model, span)?;
-        let (mut read, dark) = (self.read, Cell::new(0));
-        let show = |row| {
-            self.dark_word(row).into_iter().for_each(|word| dark.set(dark.get() | 1 << word));
-            self.show(self.now, row)
-        };
-        let len = plan.read(&self.bank, &self.model, show, &mut read);
-        self.read = read;
-        self.look_at_dark(dark.into_inner());
-        Ok(Response::Read(&self.read[..len]))
-    }
-
-    /// The word at `address` that the register holds, whatever it shows; 0 where there is none.
-    fn held_word(&self, address: u16) -> u16 {
-        let Located::Word { row: id, word, .. } = self.model.map.locate(address) else { return 0 };
-        let row = self.model.map.row(id);
-        word_of(row, self.bank.order(&self.model, row), self.bank.raw(id), word)
-    }
-
-    fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {
-        let gate = Gate { enabled: self.power_stage.is_enabled() };
-        let plan = self.bank.plan_write(&self.model, span, words, gate)?;
-        self.bank.commit(&self.model, &plan);
-        self.note_stored(&plan);
-        self.react(&plan);
-        Ok(())
-    }
-
-    fn refuse(&self, causes: Causes) -> Refusal {
-        let refusal = causes.refusal(&self.model.line.refuse);
-        refusal.expect("the model was checked: each cause that can occur has an exception code")
-    }
-
-    fn power_on(&mut self, now: Instant) {
-        self.power_stage.power_off();
-        self.report_power_stage();
-        self.memory.power_on();
-        let (servo, axis) = (self.model.wiring.servo, &self.model.wiring.axis);
-        self.power_stage = PowerStage::power_on(now, servo.ready_after, self.power_control());
-        self.motor = self.motor.switched_on(now, axis.coast, axis.position_gain);
-        (self.home_done, self.never_enabled) = (false, true);
-        self.told_not_simulated = 0;
-        (self.course, self.velocity, self.segment) = (None, None, 0);
-        self.counts_per_rev = self.counts_asked_for();
-        self.take_settings(Moment::Start);
-        self.interrupt = Interrupt::default();
-        self.chain.end();
-        self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
-        // What is active from the start has not risen.
-        self.inputs = self.active_inputs(self.now);
-        self.zero = self
-            .seen_position(self.now)
-            .saturating_sub(self.gear().counts(self.position_at_power_on));
-        let moved = self.comms.power_on(&self.model, &self.bank);
-        self.changes.push_back(Change::PoweredOn);
-        self.changes.extend(moved);
-        self.gather_inputs();
-        self.power_stage.advance(now);
-        self.report_power_stage();
-        self.update_axis();
-        self.begin_explaining();
-    }
-
-    /// Carries out `action`.
-    ///
-    /// # Errors
-    /// Why it has no effect.
-    fn act(&mut self, action: Action, modifiers: Modifiers) -> Result<(), Ignored> {
-        if self.waits_for_rest(action) {
-            return Err(Ignored::Moving);
-        }
-        let mut done = Ok(());
-        match action {
-            Action::QuickStop
-            | Action::Stop
-            | Action::HomeStart
-            | Action::MoveStart
-            | Action::RunStart => done = self.order(action, modifiers),
-            Action::Enable => done = self.power_stage.order(true),
-            Action::Release => done = self.power_stage.order(false),
-            Action::AlarmReset => done = self.power_stage.reset(),
-            Action::EncoderReset => done = self.power_stage.reset_of(AlarmCause::Encoder),
-            Action::ClearAlarmHistory => self.forget_alarms(),
-            Action::ClearPosition => {
-                self.zero = self.seen_position(self.now);
-                self.changes.push_back(Change::PositionCleared);
-            }
-            Action::ClearTurns => {
-                self.cleared_turns = self.full_turns(self.now);
-                self.changes.push_back(Change::TurnsCleared);
-            }
-            Action::StoreAll => {
-                self.bank.store_all(&self.model);
-                self.changes.push_back(Change::Stored);
-                self.note_stored_all();
-            }
-            Action::RestoreFactory => {
-                self.bank.restore_factory(&self.model, self.station);
-                // Input words are 0 then, so there is nothing left to fall back.
-                self.word_watchdogs.iter_mut().for_each(Watchdog::stop);
-                self.hear();
-                self.changes.push_back(Change::FactoryRestored);
-                self.note_stored_all();
-                self.gather_inputs();
-                self.follow_line_settings();
-            }
-            Action::PowerCycle => self.restart = true,
-        }
-        self.report_power_stage();
-        self.update_axis();
-        done
+/// What asks for the power stage of a model: commands, where it has them, or signals alone.
+fn power_control(model: &Model) -> PowerControl {
+    let wiring = &model.wiring;
+    let is_order = |action: &Action| matches!(action, Action::Enable | Action::Release);
+    let values = wiring.commands.iter().flat_map(|it| &it.actions).map(|(_, action)| action);
+    let bits = wiring.triggers.iter().flat_map(|it| &it.actions).map(|(_, action)| action);
+    let on = wiring.servo.enabled_at_power_on;
+    match on || values.chain(bits).any(is_order) {
+        true => PowerControl::Commands(CommandControl::new(on)),
+        false => PowerControl::Levels(LevelControl::default()),
     }
 }

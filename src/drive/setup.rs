@@ -1,8 +1,8 @@
-//! What a bench says about one station before it is switched on.
+//! What a bench says about one station before it is switched on, and what a request has ordered.
 
 use crate::bank::Kept;
 use crate::motion::Machine;
-use crate::vocabulary::RowId;
+use crate::vocabulary::{Action, RowId};
 
 /// A station as the bench sets it up.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -23,4 +23,13 @@ pub struct Setup {
     pub start: i64,
     /// What the position register says at power-on, in counts.
     pub position: i64,
+}
+
+/// An order that a request gave, one of those that twice are not the same as once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct IssuedCommand {
+    /// The order.
+    pub action: Action,
+    /// Did the drive obey?
+    pub obeyed: bool,
 }

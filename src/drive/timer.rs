@@ -25,7 +25,7 @@ pub enum Timer {
 
 /// A part of a drive that has deadlines, in the order in which they are woken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sleeper {
+pub(super) enum TimerOwner {
     PowerStage,
     Contacts,
     Switches,
@@ -34,7 +34,7 @@ pub(super) enum Sleeper {
     Comms,
 }
 
-impl Sleeper {
+impl TimerOwner {
     pub(super) const ALL: [Self; 6] = [
         Self::PowerStage,
         Self::Contacts,
@@ -47,14 +47,14 @@ impl Sleeper {
 
 impl Timer {
     /// The part that it wakes. A chain has none: it goes on when everything else is up to date.
-    pub(super) fn wakes(self) -> Option<Sleeper> {
+    pub(super) fn wakes(self) -> Option<TimerOwner> {
         Some(match self {
-            Self::Ready => Sleeper::PowerStage,
-            Self::Bounce(_) => Sleeper::Contacts,
-            Self::Axis(MotorTimer::SwitchEdge) => Sleeper::Switches,
-            Self::Axis(_) => Sleeper::Axis,
-            Self::HoldWord(_) => Sleeper::InputWords,
-            Self::MasterSilence => Sleeper::Comms,
+            Self::Ready => TimerOwner::PowerStage,
+            Self::Bounce(_) => TimerOwner::Contacts,
+            Self::Axis(MotorTimer::SwitchEdge) => TimerOwner::Switches,
+            Self::Axis(_) => TimerOwner::Axis,
+            Self::HoldWord(_) => TimerOwner::InputWords,
+            Self::MasterSilence => TimerOwner::Comms,
             Self::Chain => return None,
         })
     }

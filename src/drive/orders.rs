@@ -1,105 +1,78 @@
-//! What a committed write sets off: input words refreshed, commands issued, the address changed.
+//! What a committed write sets off: input words refreshed, commands carried out, the address changed.
 
-use super::{Drive, IssuedCommand};
+use super::parts::{Parts, Update};
+use super::setup::IssuedCommand;
 use crate::bank::WritePlan;
 use crate::event::{Change, Ignored, Ordered};
-use crate::model::{self, Reaction};
-use crate::time::Duration;
-use crate::vocabulary::{Action, Modifier, Modifiers, RowId};
+use crate::model::Reaction;
+use crate::vocabulary::{Action, AlarmCause, HomeStarter, Modifier, Modifiers, RowId};
 
-impl Drive {
+impl Parts {
     /// Reacts to the rows that `plan` wrote, in order of address, to commands last. Rows that only hold a
     /// value react to nothing: whoever needs the value reads it.
     pub(super) fn react(&mut self, plan: &WritePlan) {
+        let model = self.registers.model().clone();
+        let rule = model.wiring.input_words.as_ref().and_then(|words| words.hold.as_ref());
+        let time = self.registers.hold_time(rule);
         let (mut inputs, mut line) = (false, false);
         for (row, _) in plan.values() {
-            match self.model.wiring.reaction(row) {
+            match model.wiring.reaction(row) {
                 Reaction::None | Reaction::Command(_) | Reaction::Trigger(_) => {}
                 Reaction::Inputs => inputs = true,
                 Reaction::InputWord(word) => {
                     inputs = true;
-                    let time = self.hold_time();
-                    self.word_watchdogs[usize::from(word)].refresh(self.now, time);
+                    self.inputs.refresh_word(self.now, word, time);
                 }
                 Reaction::Line => line = true,
-                Reaction::Timeout => self.hear(),
+                Reaction::Timeout => self.on_request(),
             }
         }
         // What was written may be the time that words hold.
-        let time = self.hold_time();
-        self.word_watchdogs.iter_mut().for_each(|hold| hold.retime(time));
+        self.inputs.retime_words(time);
         self.expire_words();
         if inputs {
-            self.gather_inputs();
+            self.update(Update::Inputs);
         }
         if line {
             self.follow_line_settings();
         }
         // What was written may be a limit that the axis goes by.
-        self.update_axis();
-        self.tell_not_simulated();
+        self.update(Update::Axis);
+        self.update(Update::NotSimulated);
         // Commands act on what the same request has written, so they come last.
         let mut cleared = false;
         for (row, raw) in plan.values() {
-            let reaction = self.model.wiring.reaction(row);
+            let reaction = model.wiring.reaction(row);
             match reaction {
                 Reaction::Command(index) => self.command(index, row, raw),
                 Reaction::Trigger(index) => self.trigger(index, row, raw),
                 _ => {}
             }
-            if self.model.map.row(row).clears {
-                self.bank.set(row, self.at_work(row).unwrap_or(0));
+            if model.map.row(row).clears {
+                // A command that is still at work stays.
+                let at_work = self.registers.home_command(row).filter(|_| self.axis.is_homing());
+                self.registers.set(row, at_work.unwrap_or(0));
                 cleared |= matches!(reaction, Reaction::Inputs | Reaction::InputWord(_));
             }
             if let Reaction::InputWord(word) = reaction
-                && self.bank.raw(row) == 0
+                && self.registers.raw(row) == 0
             {
-                self.word_watchdogs[usize::from(word)].stop();
+                self.inputs.stop_word(word);
             }
         }
         if cleared {
-            self.explain();
+            self.report_inactive();
             // The signals of such a row fall with it, so that the next write is an edge again.
-            self.gather_inputs();
+            self.update(Update::Inputs);
         }
-        self.look_at_stored(plan);
-        self.explain();
-    }
-
-    /// Lets input words fall back that were not refreshed in time.
-    pub(super) fn expire_words(&mut self) {
-        let model = self.model.clone();
-        let Some(words) = &model.wiring.input_words else { return };
-        let mut expired = false;
-        for (hold, word) in self.word_watchdogs.iter_mut().zip(&words.rows) {
-            let (Some(held), Some(rule)) = (hold.expired(self.now), &words.hold) else { continue };
-            self.bank.set(*word, 0);
-            let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
-            let change = Change::WordExpired { word: *word, hold: rule.row, held_ms };
-            self.changes.push_back(change);
-            expired = true;
-        }
-        if expired {
-            self.gather_inputs();
-        }
-    }
-
-    /// How long a write of an input word word_watchdogs; `None` for ever.
-    fn hold_time(&self) -> Option<Duration> {
-        self.time_in(self.model.wiring.input_words.as_ref()?.hold.as_ref()?)
-    }
-
-    /// The time that a master has for something; `None` for ever.
-    pub(super) fn time_in(&self, hold: &model::HoldTime) -> Option<Duration> {
-        match self.bank.value(&self.model, hold.row) {
-            0 => hold.zero,
-            time => hold.unit.duration(time),
-        }
+        let (view, no_effect, out) = self.split_no_effect();
+        no_effect.note_written(view, out, plan);
+        self.report_inactive();
     }
 
     fn command(&mut self, index: u16, row: RowId, raw: u32) {
-        let value = self.model.map.row(row).kind.value(raw);
-        let actions = &self.model.wiring.commands[usize::from(index)].actions;
+        let value = self.registers.model().map.row(row).kind.value(raw);
+        let actions = &self.registers.model().wiring.commands[usize::from(index)].actions;
         match actions.iter().find(|(it, _)| *it == value) {
             Some((_, action)) => self.give(*action, Modifiers::default()),
             // 0 is what such a row says while nothing is asked of it.
@@ -109,7 +82,7 @@ impl Drive {
     }
 
     fn trigger(&mut self, index: u16, row: RowId, raw: u32) {
-        let model = self.model.clone();
+        let model = self.registers.model().clone();
         let triggers = &model.wiring.triggers[usize::from(index)];
         let is_set = |bit: u8| raw >> bit & 1 != 0;
         let mut modifiers = Modifiers::default();
@@ -151,9 +124,60 @@ impl Drive {
         }
     }
 
+    /// Carries out `action`.
+    ///
+    /// # Errors
+    /// Why it has no effect.
+    fn act(&mut self, action: Action, modifiers: Modifiers) -> Result<(), Ignored> {
+        if matches!(action, Action::StoreAll | Action::RestoreFactory) && self.is_moving() {
+            return Err(Ignored::Moving);
+        }
+        let [absolute, interrupt] =
+            [Modifier::Absolute, Modifier::Interrupt].map(|it| modifiers.has(it));
+        let (cx, axis, out) = self.split();
+        let mut done = Ok(());
+        match action {
+            Action::MoveStart => done = axis.start_move(cx, absolute, interrupt),
+            Action::RunStart => done = axis.start_run(cx, interrupt),
+            Action::HomeStart => done = axis.home(cx, out, HomeStarter::Command),
+            Action::Stop => done = axis.stop(cx, false),
+            Action::QuickStop => done = axis.stop(cx, true),
+            Action::Enable => done = self.power.order(true),
+            Action::Release => done = self.power.order(false),
+            Action::AlarmReset => done = self.power.reset(),
+            Action::EncoderReset => done = self.power.reset_of(AlarmCause::Encoder),
+            Action::ClearAlarmHistory => {
+                self.registers.forget_alarms();
+                self.effects.change(Change::AlarmHistoryCleared);
+            }
+            Action::ClearPosition => {
+                axis.clear_position(cx);
+                out.change(Change::PositionCleared);
+            }
+            Action::ClearTurns => {
+                axis.clear_turns(cx);
+                out.change(Change::TurnsCleared);
+            }
+            Action::StoreAll => self.registers.store_all(self.now, &mut self.effects),
+            Action::RestoreFactory => {
+                self.registers.restore_factory(self.now, &mut self.effects);
+                // Input words are 0 then, so there is nothing left to fall back.
+                self.inputs.stop_words();
+                self.on_request();
+                self.update(Update::Inputs);
+                self.follow_line_settings();
+            }
+            Action::PowerCycle => self.restart = true,
+        }
+        self.report_power();
+        self.report_axis(None);
+        self.update(Update::Axis);
+        done
+    }
+
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on.
-    pub(super) fn follow_line_settings(&mut self) {
-        let changes = self.comms.follow_settings(&self.model, &self.bank);
-        self.changes.extend(changes.into_iter().flatten());
+    fn follow_line_settings(&mut self) {
+        let changes = self.comms.follow_settings(&self.registers);
+        changes.into_iter().flatten().for_each(|change| self.effects.change(change));
     }
 }

@@ -1,0 +1,38 @@
+//! What comes out of a drive: one queue of values, in the order in which they came to be.
+
+use super::timer::Timer;
+use crate::event::Change;
+use std::collections::VecDeque;
+
+/// What comes out of a drive, in order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DriveEffect {
+    /// Something has changed, or has no effect.
+    Changed(Change),
+    /// A deadline has woken it.
+    Woken(Timer),
+}
+
+/// The effects that nobody has taken yet.
+#[derive(Debug)]
+pub(super) struct EffectQueue {
+    effects: VecDeque<DriveEffect>,
+}
+
+impl EffectQueue {
+    pub(super) fn new() -> Self {
+        Self { effects: VecDeque::with_capacity(8) }
+    }
+
+    pub(super) fn change(&mut self, change: Change) {
+        self.effects.push_back(DriveEffect::Changed(change));
+    }
+
+    pub(super) fn woken(&mut self, timer: Timer) {
+        self.effects.push_back(DriveEffect::Woken(timer));
+    }
+
+    pub(super) fn pop(&mut self) -> Option<DriveEffect> {
+        self.effects.pop_front()
+    }
+}
