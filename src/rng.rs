@@ -2,7 +2,7 @@
 //!
 //! A [`Fork`] is a family of streams of ChaCha8, whose output is the same on every machine and in every
 //! version. Its key is, in 32 bytes: the seed (little endian), the FNV-1a hash of 64 bits of each of two
-//! names, and zeros. Stream `n` of it is for the `n`th time that somebody asks, so that a draw more or less at
+//! names, and zeros. Stream `n` of it is for the `n`th draw, so that a draw more or less at
 //! one time moves nothing at the next.
 //!
 //! Numbers are made from the stream here, not by a library whose ways may change.
@@ -75,7 +75,7 @@ pub(crate) fn fnv1a(text: &str) -> u64 {
 mod tests {
     use super::*;
 
-    /// If this fails, every seed that somebody wrote down means something else now.
+    /// If this fails, recorded seeds no longer reproduce their runs.
     #[test]
     fn the_streams_never_change() {
         assert_eq!(fnv1a("foobar"), 0x8594_4171_F739_67E8, "as published");

@@ -38,9 +38,9 @@ pub struct Format {
 pub enum Parity {
     /// No parity bit.
     None,
-    /// Even.
+    /// The parity bit makes the number of ones even.
     Even,
-    /// Odd.
+    /// The parity bit makes the number of ones odd.
     Odd,
 }
 
@@ -77,9 +77,10 @@ impl Settings {
     /// of what it is there (serial line, 2.5.1.1: 1.75 ms for t3.5).
     pub fn silence(self, characters: f64) -> Duration {
         let floor = Duration::from_secs_f64(0.000_5 * characters);
-        match self.baud > 19_200 {
-            true => self.characters(characters).max(floor),
-            false => self.characters(characters),
+        if self.baud > 19_200 {
+            self.characters(characters).max(floor)
+        } else {
+            self.characters(characters)
         }
     }
 }

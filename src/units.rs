@@ -20,11 +20,11 @@ pub enum Dimension {
     Speed,
     /// Change of speed with time.
     Acceleration,
-    /// Time.
+    /// Durations, in seconds.
     Time,
     /// Part of a whole.
     Ratio,
-    /// Angle.
+    /// Angles, in degrees.
     Angle,
     /// Whole turns.
     Turns,
@@ -88,7 +88,10 @@ impl Unit {
 
     /// The symbols that measure `dimension`.
     pub fn symbols_of(dimension: Dimension) -> impl Iterator<Item = &'static str> {
-        SYMBOLS.iter().filter(move |(_, it, _)| *it == dimension).map(|(name, ..)| *name)
+        SYMBOLS
+            .iter()
+            .filter(move |(_, measured, _)| *measured == dimension)
+            .map(|(name, ..)| *name)
     }
 
     /// `value` steps of this unit as a time, if it measures time and the value is not negative.

@@ -44,9 +44,10 @@ pub fn cell(strict: bool) -> Rig {
 /// One drive, patient as on a port or strict as the standard has it.
 fn one(model: &str, strict: bool) -> Rig {
     let rig = crate::kit::rig(model, &[], &DeviceSpec::default());
-    match strict {
-        false => rig,
-        true => rig.with_framing(Framing::Rtu { silence: STRICT_GAP, patience: None }),
+    if strict {
+        rig.with_framing(Framing::Rtu { silence: STRICT_GAP, patience: None })
+    } else {
+        rig
     }
 }
 

@@ -1,4 +1,4 @@
-//! LineBehaviour of a line: when bytes leave, in which lumps, what comes back and what others say, to the nanosecond.
+//! Behaviour of a line, to the nanosecond: when bytes are sent, in which chunks, what is echoed, and the traffic of others.
 
 mod adapter;
 mod keys;

@@ -263,7 +263,7 @@ fn a_worn_row_is_told_at_ten_and_at_a_hundred_thousand() {
 }
 
 #[test]
-fn a_master_that_stores_in_its_cycle_is_told_of_once() {
+fn cyclic_eeprom_writes_are_reported_once() {
     let mut rig = servo(&DeviceSpec::default());
     let cycle = |rig: &mut Rig, every: Duration| {
         for _ in 0..300 {

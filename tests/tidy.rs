@@ -2,6 +2,10 @@
 
 mod floors;
 
+mod circles;
+mod old_words;
+mod types;
+
 use crate::source::Source;
 use drivemu::model::Choices;
 use drivemu::model::builtin::Builtin;

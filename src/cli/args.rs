@@ -56,13 +56,13 @@ pub struct RunArgs {
     /// Baud rate (default: from the parameters of the model)
     #[arg(short = 'b', long, value_name = "N")]
     pub baud: Option<u32>,
-    /// Data bits
+    /// Data bits, 7 or 8 (default: from the parameters of the model)
     #[arg(short = 'd', long, value_name = "7|8", value_parser = clap::value_parser!(u8).range(7..=8))]
     pub data_bits: Option<u8>,
-    /// Parity
+    /// Parity (default: from the parameters of the model)
     #[arg(short = 'P', long, value_name = "none|even|odd", hide_possible_values = true)]
     pub parity: Option<ParityArg>,
-    /// Stop bits
+    /// Stop bits, 1 or 2 (default: from the parameters of the model)
     #[arg(short = 's', long, value_name = "1|2", value_parser = clap::value_parser!(u8).range(1..=2))]
     pub stop_bits: Option<u8>,
     /// A model option (crc_error=silent) or the initial value of a register (accel_time=200); repeatable

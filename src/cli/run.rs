@@ -187,8 +187,9 @@ fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf, Vec<PathB
 /// `--pty MODEL` and `--tcp MODEL` take the model for a link or an address.
 fn refuse_swallowed_model(args: &RunArgs) -> Result<(), CliError> {
     let link = args.pty.iter().flatten().filter_map(|link| link.to_str());
-    let given =
-        link.map(|link| ("--pty", link)).chain(args.tcp.iter().map(|it| ("--tcp", it.as_str())));
+    let given = link
+        .map(|link| ("--pty", link))
+        .chain(args.tcp.iter().map(|address| ("--tcp", address.as_str())));
     for (flag, name) in given {
         if args.target.is_none() && Builtin::find(name).is_some() {
             let text =
@@ -272,9 +273,11 @@ fn line(
     let spec =
         DeviceSpec { unit: args.unit, switches: args.switches, set, ..DeviceSpec::default() };
     let mut device = Device::new(model, &spec).map_err(|problems| {
-        let sentence = |it: &SpecProblem| match &it.advice {
-            Some(advice) => format!("{}: {} ({advice})\n", flag(&it.override_key, &spec), it.what),
-            None => format!("{}: {}\n", flag(&it.override_key, &spec), it.what),
+        let sentence = |problem: &SpecProblem| match &problem.advice {
+            Some(advice) => {
+                format!("{}: {} ({advice})\n", flag(&problem.override_key, &spec), problem.what)
+            }
+            None => format!("{}: {}\n", flag(&problem.override_key, &spec), problem.what),
         };
         CliError::invalid(problems.iter().map(sentence).collect::<String>())
     })?;

@@ -36,7 +36,7 @@ fn find(model: &Model, name: &str) -> Result<RowId, CliError> {
     model.map.find(name).ok_or_else(|| {
         let ids = model.map.rows().map(|(_, row)| row.id.as_str());
         let advice = crate::problem::suggest::did_you_mean(name, ids);
-        let advice = advice.map(|it| format!(" ({it})")).unwrap_or_default();
+        let advice = advice.map(|advice| format!(" ({advice})")).unwrap_or_default();
         CliError::invalid(format!("{} has no row `{name}`{advice}", model.name))
     })
 }
@@ -169,7 +169,7 @@ fn object(model: &Model, id: RowId) -> Value {
         "init": row.kind.value(row.init),
         "unit": row.unit_text,
         "applies": row.applies.map(|_| applies(row.applies)),
-        "counts": model.counts(id).into_iter().map(|(it, taken)| (it, taken.name())).collect::<Vec<_>>(),
+        "counts": model.counts(id).into_iter().map(|(name, taken)| (name, taken.name())).collect::<Vec<_>>(),
         "section": row.see,
         "values": row.values,
         "bits": row.bits,
@@ -184,8 +184,9 @@ fn object(model: &Model, id: RowId) -> Value {
 fn not_simulated(model: &Model, id: RowId) -> Vec<&str> {
     let wiring = &model.wiring;
     let has = |functions: &[RowId]| functions.contains(&id);
-    let input = wiring.input_terminals.as_ref().is_some_and(|it| has(&it.functions));
-    let output = wiring.output_terminals.as_ref().is_some_and(|it| has(&it.functions));
+    let input = wiring.input_terminals.as_ref().is_some_and(|terminals| has(&terminals.functions));
+    let output =
+        wiring.output_terminals.as_ref().is_some_and(|terminals| has(&terminals.functions));
     wiring.not_simulated.of_row(id, input, output)
 }
 
@@ -227,9 +228,9 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
     let reaction = || match model.wiring.reaction(id) {
         Reaction::None => goes_by(model, id),
         Reaction::Trigger(index) => {
-            let it = &model.wiring.triggers[usize::from(index)];
-            let actions = it.actions.iter().map(|(bit, it)| (bit, it.name()));
-            let modifiers = it.modifiers.iter().map(|(bit, it)| (bit, it.name()));
+            let triggers = &model.wiring.triggers[usize::from(index)];
+            let actions = triggers.actions.iter().map(|(bit, action)| (bit, action.name()));
+            let modifiers = triggers.modifiers.iter().map(|(bit, modifier)| (bit, modifier.name()));
             let mut bits: Vec<_> = actions.chain(modifiers).collect();
             bits.sort_unstable();
             let bits = bits.iter().map(|(bit, name)| format!("bit {bit} {name}"));
@@ -253,14 +254,19 @@ fn wired(model: &Model, id: RowId) -> Option<String> {
 /// What goes by the value of a row that sets nothing off.
 fn goes_by(model: &Model, id: RowId) -> String {
     let axis = &model.wiring.axis;
-    let settings = axis.settings.iter().filter(|it| it.row == id).map(|it| it.setting.name());
+    let settings = axis
+        .settings
+        .iter()
+        .filter(|setting| setting.row == id)
+        .map(|setting| setting.setting.name());
     let counts = (axis.counts_per_rev == Counts::Row(id)).then_some("counts per revolution");
     let encoder =
         (axis.encoder == Some(Counts::Row(id))).then_some("encoder increments per revolution");
     let segments = axis.segments.rows().any(|row| row == id).then_some("segments");
     let thresholds = model.wiring.thresholds.iter();
-    let thresholds =
-        thresholds.filter(|(_, it)| *it == Number::Row(id)).map(|(threshold, _)| threshold.name());
+    let thresholds = thresholds
+        .filter(|(_, number)| *number == Number::Row(id))
+        .map(|(threshold, _)| threshold.name());
     let mut names: Vec<_> =
         settings.chain(counts).chain(encoder).chain(segments).chain(thresholds).collect();
     names.extend(whole(model, id));
@@ -278,15 +284,21 @@ fn whole(model: &Model, id: RowId) -> impl Iterator<Item = &'static str> {
     let gear = wiring.axis.gear.as_ref();
     let interrupt = wiring.axis.interrupt.as_ref();
     let whole = [
-        ("output terminals", outputs.is_some_and(|it| it.functions.contains(&id))),
-        ("output terminals", outputs.is_some_and(|it| it.normally_closed == Some(id))),
-        ("output words", wiring.output_words.iter().any(|it| it.enabled_by == Some(id))),
+        ("output terminals", outputs.is_some_and(|terminals| terminals.functions.contains(&id))),
+        (
+            "output terminals",
+            outputs.is_some_and(|terminals| terminals.normally_closed == Some(id)),
+        ),
+        ("output words", wiring.output_words.iter().any(|word| word.enabled_by == Some(id))),
         ("user outputs", wiring.user_outputs == Some(id)),
         ("word order", ordered),
-        ("gear", gear.is_some_and(|it| [it.numerator, it.denominator].contains(&id))),
-        ("interrupt positioning", interrupt.is_some_and(|it| it.rule.row() == Some(id))),
+        ("gear", gear.is_some_and(|gear| [gear.numerator, gear.denominator].contains(&id))),
+        (
+            "interrupt positioning",
+            interrupt.is_some_and(|interrupt| interrupt.rule.row() == Some(id)),
+        ),
     ];
-    whole.into_iter().filter(|it| it.1).map(|it| it.0)
+    whole.into_iter().filter(|(_, applies)| *applies).map(|(name, _)| name)
 }
 
 fn kind(kind: RowKind) -> &'static str {
@@ -329,9 +341,10 @@ fn kept(model: &Model, row: &Row) -> String {
         let (first, last) = window.span;
         window.layer == crate::model::Layer::RamAndStore && (first..=last).contains(&row.at)
     };
-    let commands = model.wiring.commands.iter().flat_map(|it| &it.actions);
-    let stores =
-        commands.map(|(_, action)| *action).any(|it| it == crate::vocabulary::Action::StoreAll);
+    let commands = model.wiring.commands.iter().flat_map(|rows| &rows.actions);
+    let stores = commands
+        .map(|(_, action)| *action)
+        .any(|action| action == crate::vocabulary::Action::StoreAll);
     let window = model.map.windows().iter().find(keeps);
     match (row.access, row.volatile, window) {
         (Access::Read, ..) => String::new(),

@@ -61,9 +61,10 @@ impl Ascii {
         if !silent {
             return None;
         }
-        let why = match std::mem::take(&mut self.inside) {
-            true => NoiseCause::Unfinished,
-            false => NoiseCause::OutsideFrame,
+        let why = if std::mem::take(&mut self.inside) {
+            NoiseCause::Unfinished
+        } else {
+            NoiseCause::OutsideFrame
         };
         Some(self.noise(why))
     }
@@ -80,9 +81,10 @@ impl Ascii {
     /// Looks at one character; leaves it where it is if what came before must be told first.
     fn step(&mut self, byte: u8) -> AsciiState {
         if byte == b':' && !self.body.is_empty() {
-            let why = match std::mem::take(&mut self.inside) {
-                true => NoiseCause::Unfinished,
-                false => NoiseCause::OutsideFrame,
+            let why = if std::mem::take(&mut self.inside) {
+                NoiseCause::Unfinished
+            } else {
+                NoiseCause::OutsideFrame
             };
             return AsciiState::Noise(why);
         }

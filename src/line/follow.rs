@@ -81,7 +81,8 @@ impl Follower {
             return None;
         }
         let len = rtu::response_len(bytes)?;
-        let expected = function & EXCEPTION != 0 || pending.answer_len.is_none_or(|it| it == len);
+        let expected =
+            function & EXCEPTION != 0 || pending.answer_len.is_none_or(|expected| expected == len);
         expected.then_some(len)
     }
 }

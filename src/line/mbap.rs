@@ -45,9 +45,10 @@ impl Mbap {
         self.taken = len;
         let (transaction, adu) = mbap::decode(frame);
         self.transaction = transaction;
-        Some(match units.has(adu.unit) {
-            true => LineEvent::Request(adu),
-            false => LineEvent::Foreign(Foreign::Request(adu)),
+        Some(if units.has(adu.unit) {
+            LineEvent::Request(adu)
+        } else {
+            LineEvent::Foreign(Foreign::Request(adu))
         })
     }
 

@@ -22,7 +22,7 @@ use crate::wire::{Adu, Coding, Frame, NoiseCause};
 /// How frames are told apart on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Framing {
-    /// RTU.
+    /// Binary frames that end by silence, with a CRC.
     Rtu {
         /// Silence that ends a frame, t3.5; on a patient line only one whose CRC fits.
         silence: Duration,
@@ -56,7 +56,7 @@ pub enum LineEvent<'a> {
     BadAscii {
         /// The characters between `:` and CR LF.
         bytes: &'a [u8],
-        /// Why.
+        /// Why it is not a valid frame.
         why: BadAscii,
     },
     /// Bytes that can be no frame.

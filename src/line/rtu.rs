@@ -10,7 +10,7 @@ use crate::time::{Duration, Instant};
 use crate::wire::NoiseCause;
 use crate::wire::rtu::{self, MAX, MIN};
 
-/// After this much silence nobody waits for an answer any more: what comes is a request, perhaps once again.
+/// After this much silence no reply is expected any more: what comes is a request, possibly a repeated one.
 const ANSWERS_WITHIN: Duration = Duration::from_millis(500);
 
 /// Room for one frame and a little of what runs over.
@@ -127,9 +127,10 @@ impl Rtu {
 
     /// Length of the frame at the front, if its function tells it.
     fn told_len(&self, units: &Units) -> Option<usize> {
-        match units.has(*self.bytes.first()?) {
-            true => rtu::request_len(&self.bytes),
-            false => self.follower.frame_len(&self.bytes),
+        if units.has(*self.bytes.first()?) {
+            rtu::request_len(&self.bytes)
+        } else {
+            self.follower.frame_len(&self.bytes)
         }
     }
 

@@ -52,9 +52,10 @@ pub fn decode<'a>(characters: &[u8], into: &'a mut Frame) -> Result<Adu<'a>, Bad
     }
     let (&got, body) = into.split_last().ok_or(BadAscii::Length(0))?;
     let want = lrc(body);
-    match got == want {
-        true => Ok(Adu { unit: body[0], pdu: &body[1..] }),
-        false => Err(BadAscii::Lrc { got, want }),
+    if got == want {
+        Ok(Adu { unit: body[0], pdu: &body[1..] })
+    } else {
+        Err(BadAscii::Lrc { got, want })
     }
 }
 

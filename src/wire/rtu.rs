@@ -34,10 +34,7 @@ pub fn decode(bytes: &[u8]) -> Result<Adu<'_>, BadCrc> {
     let (body, crc) = bytes.split_at(bytes.len() - 2);
     let got = u16::from_le_bytes([crc[0], crc[1]]);
     let want = crc16(body);
-    match got == want {
-        true => Ok(Adu { unit: body[0], pdu: &body[1..] }),
-        false => Err(BadCrc { got, want }),
-    }
+    if got == want { Ok(Adu { unit: body[0], pdu: &body[1..] }) } else { Err(BadCrc { got, want }) }
 }
 
 /// Where a frame that begins with `bytes` could end: the lengths, shortest first, at which its CRC fits.

@@ -10,10 +10,8 @@ fn the_files_of_its_tables_are_there() {
     for row in page.lines().filter(|line| line.starts_with('|')) {
         let mut folder = String::new();
         for name in row.split('`').skip(1).step_by(2).filter(|it| it.contains(['/', '.'])) {
-            let path = match name.contains('/') {
-                true => name.to_owned(),
-                false => format!("{folder}/{name}"),
-            };
+            let path =
+                if name.contains('/') { name.to_owned() } else { format!("{folder}/{name}") };
             if let Some((above, _)) = path.rsplit_once('/').filter(|_| path.ends_with(".rs")) {
                 folder = above.to_owned();
             } else {

@@ -134,7 +134,7 @@ fn not_simulated(model: &Model) -> String {
         return String::new();
     }
     let mut out = String::from(
-        "\n## Not simulated\n\nThese do nothing; the log says so when one is asked for first after power-on.\n\n",
+        "\n## Not simulated\n\nThese have no effect; the log reports the first use after power-on.\n\n",
     );
     for label in labels {
         writeln!(out, "- {label}").expect("a string");
@@ -145,7 +145,7 @@ fn not_simulated(model: &Model) -> String {
 /// When a value counts that a master writes; of segments the first stands for all.
 fn settings(model: &Model) -> String {
     let mut out = String::from(
-        "\n## When settings count\n\n| row | name | effect time printed | counts |\n|---|---|---|---|\n",
+        "\n## When settings take effect\n\n| row | name | printed effect time | takes effect |\n|---|---|---|---|\n",
     );
     let axis = &model.wiring.axis;
     let rules: Vec<_> = axis.segments.rules().collect();
@@ -179,7 +179,7 @@ fn settings(model: &Model) -> String {
 fn places(model: &Model, output: Output) -> Vec<String> {
     let wiring = &model.wiring;
     let is = |shown: &Shown| shown.signal == output;
-    let turned = |shown: &Shown| if shown.inverted { ", turned round" } else { "" };
+    let turned = |shown: &Shown| if shown.inverted { ", inverted" } else { "" };
     let codes = wiring.output_terminals.iter().flat_map(|it| &it.codes).filter(|it| is(&it.1));
     let mut places: Vec<_> =
         codes.map(|(code, it)| format!("output function {code}{}", turned(it))).collect();
@@ -194,8 +194,9 @@ fn places(model: &Model, output: Output) -> Vec<String> {
 
 /// The manual's code of a row, or its address where our own word stands for it.
 fn code(row: &Row) -> String {
-    match row.id.starts_with(char::is_lowercase) {
-        true => format!("0x{:04X}", row.at),
-        false => row.id.clone(),
+    if row.id.starts_with(char::is_lowercase) {
+        format!("0x{:04X}", row.at)
+    } else {
+        row.id.clone()
     }
 }

@@ -143,7 +143,7 @@ fn each_rule_of_a_preset_acts() {
 }
 
 #[test]
-fn exceptions_suffer_too() {
+fn faults_apply_to_exceptions_too() {
     let mut rig = drive(&["bad_crc:count=1", "delay:ms=5"]);
     let refused = frame(&[0xAB, 1]);
     let mut bad = refused.clone();

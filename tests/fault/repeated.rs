@@ -87,7 +87,7 @@ fn each_kind_lets_the_answer_arrive_or_not() {
 
 /// An order that the axis ignores because it still moves is one too: next time the master may be slower.
 #[test]
-fn a_hasty_master_is_told_on_as_well() {
+fn a_hasty_master_is_reported_as_well() {
     let mut rig = stepper(&["lose_reply:count=2"]);
     ask(&mut rig, MOVE);
     ask(&mut rig, MOVE);

@@ -84,7 +84,7 @@ proptest! {
 
     /// No traffic brings it down under any faults, what is held leaves, and the seed says it all.
     #[test]
-    fn any_traffic_in_any_weather(seed: u64, traffic in pieces(1..40)) {
+    fn any_traffic_under_any_faults(seed: u64, traffic in pieces(1..40)) {
         let spec = |kind: &FaultKind| match kind.name {
             "delay" => "delay:ms=0-40,probability=0.1".to_owned(),
             "exception" => "exception:code=4,probability=0.1".to_owned(),

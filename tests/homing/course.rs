@@ -71,10 +71,8 @@ impl<'a> Course<'a> {
             done: Vec::new(),
         };
         let active = it.zone().is_some_and(|[from, to]| from <= position && position < to);
-        let found = match active {
-            true => it.follow(&all.active, &[]),
-            false => it.follow(&all.idle, &all.at_limit),
-        };
+        let found =
+            if active { it.follow(&all.active, &[]) } else { it.follow(&all.idle, &all.at_limit) };
         if let (true, Some(forward)) = (found, all.refined) {
             it.refine(forward);
         }
@@ -188,9 +186,10 @@ impl<'a> Course<'a> {
             return None;
         }
         let machine = &self.scene.machine;
-        match forward {
-            true => machine.positive_limit.map(|it| self.position.max(it as f64)),
-            false => machine.negative_limit.map(|it| self.position.min(it as f64)),
+        if forward {
+            machine.positive_limit.map(|it| self.position.max(it as f64))
+        } else {
+            machine.negative_limit.map(|it| self.position.min(it as f64))
         }
     }
 
@@ -206,10 +205,8 @@ impl<'a> Course<'a> {
 
     fn mark_ahead(&self, forward: bool, from: f64) -> Option<f64> {
         let count = from.floor() as i64;
-        let mark = match forward {
-            true => self.scene.mark_above(count),
-            false => self.scene.mark_at_or_below(count),
-        };
+        let mark =
+            if forward { self.scene.mark_above(count) } else { self.scene.mark_at_or_below(count) };
         mark.map(|it| it as f64)
     }
 

@@ -1,4 +1,4 @@
-//! A USB adapter hands bytes over in lumps, and a 2-wire line gives back what the master says.
+//! A USB adapter delivers bytes in chunks, and a 2-wire line echoes what the master sends.
 
 use super::{ANSWER, Bench, MS, READ, characters, frame};
 use drivemu::time::{Duration, Instant};
@@ -67,9 +67,9 @@ fn a_full_packet_does_not_wait() {
     assert!(rtu::decode(&bytes[..45]).is_ok());
 }
 
-/// At 9600 baud 14 or 13 characters arrive within 16 ms; the first and the last lump have what is left for them.
+/// At 9600 baud 14 or 13 characters arrive within 16 ms; the first and the last chunk have what is left for them.
 #[test]
-fn a_slow_line_fills_lumps_by_time() {
+fn a_slow_line_fills_chunks_by_time() {
     for seed in 0..16 {
         let drives = "drives: [{model: k-series}]";
         let line = format!("pty: auto, settings: 9600-8N2, chunk: 16ms, pacing: line, {drives}");
@@ -112,7 +112,7 @@ fn a_short_reply_is_torn_at_any_place() {
 
 /// What has arrived when the timer ends goes along, of however many replies.
 #[test]
-fn bytes_of_two_replies_share_a_lump() {
+fn bytes_of_two_replies_share_a_chunk() {
     let mut bench = Bench::servo("chunk: 255ms");
     bench.receive(&frame(READ));
     bench.wait(255 * MS);

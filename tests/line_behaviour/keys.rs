@@ -44,7 +44,7 @@ fn each_key_changes_what_passes() {
 }
 
 #[test]
-fn presets_bring_habits() {
+fn presets_set_line_behaviour() {
     for preset in Preset::ALL.iter().filter(|preset| !preset.line_behaviour().is_empty()) {
         let name = preset.name;
         let line =
@@ -62,7 +62,7 @@ fn presets_bring_habits() {
 
 /// A preset that comes while the line runs, and line behaviour that go.
 #[test]
-fn habits_come_and_go() {
+fn line_behaviour_changes_while_running() {
     let mut rig = crate::kit::rig("hcfa-x", &[], &Default::default());
     assert_eq!(rig.send(&frame(READ)), frame(ANSWER));
     rig.add_fault("usb_adapter").expect("a preset");
@@ -78,7 +78,7 @@ fn habits_come_and_go() {
 
 /// What is told when a run begins.
 #[test]
-fn habits_are_told() {
+fn line_behaviour_as_text() {
     let told = |line_behaviour: &str| Bench::servo(line_behaviour).bus.line_behaviour().to_string();
     assert_eq!(told("pacing: line"), "paced replies");
     let all = "pacing: line, chunk: 16ms, echo: true, chatter: {units: [7, 8]}";

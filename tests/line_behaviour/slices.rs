@@ -6,7 +6,7 @@ use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use proptest::prelude::*;
 
-const HABITS: [&str; 4] = [
+const BEHAVIOURS: [&str; 4] = [
     "pacing: line, chatter: {units: [7, 8], every: 20ms}",
     "pacing: line, chunk: 16ms, echo: true",
     "strict: true, chunk: 3ms, chatter: {units: [7, 8], every: 20ms}, faults: [{do: duplicate, every: 3}]",
@@ -34,7 +34,7 @@ proptest! {
 
     #[test]
     fn slices_of_time_change_nothing(seed: u64, traffic in pieces(1..20)) {
-        for line_behaviour in HABITS {
+        for line_behaviour in BEHAVIOURS {
             let whole = run(line_behaviour, seed, &traffic, 1);
             prop_assert_eq!(&whole, &run(line_behaviour, seed, &traffic, 7), "{}", line_behaviour);
         }

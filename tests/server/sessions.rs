@@ -82,7 +82,7 @@ fn stays_still(port: &File) {
     assert_eq!(waiting(port), 7);
 }
 
-/// Delayed, late, in lumps, at the pace of the line: what is held back for a program that has left is dropped.
+/// Delayed, late, in chunks, at the pace of the line: what is held back for a program that has left is dropped.
 #[test]
 fn what_is_held_back_goes_too() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -53,9 +53,9 @@ fn each_quantity_shows() {
                 let row = row_showing(&rig, &Shows::Quantity(quantity));
                 let mut seen = vec![rig.drive().show(row)];
                 for cause in [AlarmCause::UnderVoltage, AlarmCause::OverVoltage] {
-                    suffers(&mut rig, cause, true);
+                    hold_cause(&mut rig, cause, true);
                     seen.push(rig.drive().show(row));
-                    suffers(&mut rig, cause, false);
+                    hold_cause(&mut rig, cause, false);
                 }
                 seen.push(rig.drive().show(row));
                 assert_eq!(seen, [480, 300, 905, 480], "in tenths");
@@ -84,7 +84,7 @@ fn each_quantity_shows() {
 }
 
 /// Has a cause stand, or go.
-fn suffers(rig: &mut Rig, cause: AlarmCause, on: bool) {
+fn hold_cause(rig: &mut Rig, cause: AlarmCause, on: bool) {
     let device_fault = DeviceFault::Cause(cause);
     rig.command(Command::Drive(FIRST, DriveOrder::DeviceFault { device_fault, on }))
         .expect("an alarm of the model");
