@@ -389,6 +389,15 @@ impl Outgoing<'_> {
         self.transmitter.insert(at, Progress::Waiting, entry);
     }
 
+    /// Does this kind of fault hold a reply for the link?
+    pub fn is_holding(&self) -> bool {
+        let held = |entry: &Entry| {
+            entry.link == self.link
+                && entry.holder.is_some_and(|holder| holder.name() == self.effect.name())
+        };
+        self.transmitter.queue.values().any(held)
+    }
+
     /// Gives bytes back to the master at once, as a receiver does that stays on.
     pub fn echo(&mut self, frame: &Frame) {
         self.transmitter.pass(self.now, self.link, frame);
