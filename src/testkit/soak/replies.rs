@@ -64,8 +64,8 @@ impl Replies {
                 What::BadCrc { frame, answered: Some((_, code)), .. } => {
                     let function = frame.get(1).map_or(0, |it| it & 0x7F);
                     let want = exception(function, *code);
-                    let got = self.own(1, &mut frames)?;
-                    same(&got[0], &framed(context.coding, frame[0], &want))?;
+                    let want = framed(context.coding, frame[0], &want);
+                    self.own(1, &mut frames, |own| same(&own[0], &want))?;
                 }
                 _ => {}
             }
@@ -84,26 +84,21 @@ impl Replies {
         let whole = framed(coding, it.unit, &it.answer);
         let Leaves { before, reply, after } = leaves;
         let is_there = !matches!(reply, LeavingReply::Later | LeavingReply::Nothing);
-        let own = self.own(before + usize::from(is_there) + after, frames)?;
-        let left = own.get(before);
-        match (reply, left) {
+        let fits = |own: &[Frame]| match (reply, own.get(before)) {
             (LeavingReply::Intact, Some(left)) => same(left, &whole),
+            (LeavingReply::Beginning, Some(left)) if whole.starts_with(left) => Ok(()),
             (LeavingReply::Changed, Some(left)) if left[..] != whole[..] => Ok(()),
             (LeavingReply::Changed, _) => Err("a damaged reply is as good as new".into()),
-            (LeavingReply::Beginning, Some(left)) => {
-                let (head, tail) = whole.split_at(left.len().min(whole.len()));
-                self.held.push(tail.to_vec());
-                same(left, head)
-            }
-            (LeavingReply::Later, _) => {
-                self.held.push(whole.to_vec());
-                Ok(())
-            }
-            (LeavingReply::Nothing, _) => Ok(()),
-            (LeavingReply::Intact | LeavingReply::Beginning, None) => {
-                Err("a reply is missing".into())
-            }
+            (LeavingReply::Later | LeavingReply::Nothing, _) => Ok(()),
+            (LeavingReply::Intact | LeavingReply::Beginning, _) => Err("no such reply".into()),
+        };
+        let own = self.own(before + usize::from(is_there) + after, frames, fits)?;
+        match reply {
+            LeavingReply::Beginning => self.held.push(whole[own[before].len()..].to_vec()),
+            LeavingReply::Later => self.held.push(whole.to_vec()),
+            LeavingReply::Intact | LeavingReply::Changed | LeavingReply::Nothing => {}
         }
+        Ok(())
     }
 
     /// A rule has acted, and no drive was asked, or all were.
@@ -114,29 +109,36 @@ impl Replies {
         coding: Coding,
     ) -> Result<(), String> {
         match hit.effect.passage() {
-            Passage::Lost => self.own(0, frames).map(drop),
+            Passage::Lost => self.own(0, frames, |_| Ok(())).map(drop),
             Passage::Answered(code) => {
-                let got = self.own(1, frames)?[0];
-                let exception = exception(function(&got, coding) & 0x7F, code);
-                same(&got, &framed(coding, hit.unit, &exception))
+                let fits = |own: &[Frame]| {
+                    let exception = exception(function(&own[0], coding) & 0x7F, code);
+                    same(&own[0], &framed(coding, hit.unit, &exception))
+                };
+                self.own(1, frames, fits).map(drop)
             }
             Passage::Delivered if hit.unit == BROADCAST => {
-                self.own(hit.effect.leaves().before, frames).map(drop)
+                self.own(hit.effect.leaves().before, frames, |_| Ok(())).map(drop)
             }
             Passage::Delivered => Err(format!("{hit}, but nobody gave an answer")),
         }
     }
 
-    /// The `count` frames that belong to a request. Those around them were held back until now.
-    fn own(&mut self, count: usize, frames: &mut Vec<Frame>) -> Result<Vec<Frame>, String> {
+    /// The `count` frames that belong to a request, which `fits` them. Those around them were held back until now.
+    fn own(
+        &mut self,
+        count: usize,
+        frames: &mut Vec<Frame>,
+        fits: impl Fn(&[Frame]) -> Result<(), String>,
+    ) -> Result<Vec<Frame>, String> {
         let Some(last) = frames.len().checked_sub(count) else {
             return Err(format!("{} frames left where {count} belong to a request", frames.len()));
         };
         let mut result = Ok(Vec::new());
         for first in (0..=last).rev() {
             let mut others = frames.clone();
-            let own = others.drain(first..first + count).collect();
-            result = self.come(&others).map(|()| own);
+            let own: Vec<Frame> = others.drain(first..first + count).collect();
+            result = fits(&own).and_then(|()| self.come(&others)).map(|()| own);
             if result.is_ok() {
                 frames.clear();
                 break;
