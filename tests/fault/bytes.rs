@@ -78,6 +78,13 @@ fn each_kind_on_rtu() {
                 assert_eq!(both(&mut rig, WRITE), [SILENCE, SILENCE]);
                 assert_eq!(ask(&mut rig, READ), [frame(WRITE), frame(&[3, 2, 0, 7])].concat());
             }
+            "reorder" => {
+                let mut rig = rig("reorder:count=1");
+                assert_eq!(ask(&mut rig, WRITE), SILENCE);
+                assert_eq!(jog_speed(&mut rig), 7, "executed at once");
+                assert_eq!(ask(&mut rig, READ), [frame(&[3, 2, 0, 7]), frame(WRITE)].concat());
+                assert_eq!(rig.advance(10_000 * MS), SILENCE);
+            }
             "duplicate" => {
                 assert_eq!(ask(&mut rig("duplicate"), READ), [&whole[..], &whole].concat());
             }
@@ -184,6 +191,44 @@ fn a_late_reply_lands_in_a_foreign_transaction() {
     assert_eq!(rig.push(&rtu::encode(9, READ)), frame(ANSWER));
     assert_eq!(ask(&mut rig, READ), SILENCE);
     assert_eq!(rig.push(&rtu::encode(0, WRITE)), frame(ANSWER));
+}
+
+/// Only a reply goes ahead of it, whatever a rule does to that; with no reply it leaves by itself.
+#[test]
+fn a_held_reply_waits_for_another_reply() {
+    let mut rig = drive(&["reorder:count=1,ms=300", "lose_reply:count=1", "extra:count=1"]);
+    assert_eq!(ask(&mut rig, WRITE), SILENCE);
+    assert_eq!(rig.push(&rtu::encode(9, READ)), SILENCE, "a foreign request");
+    assert_eq!(ask(&mut rig, READ), SILENCE, "its reply is lost");
+    let sent = ask(&mut rig, READ);
+    let (whole, held) = (frame(&[3, 2, 0, 7]), frame(WRITE));
+    assert_eq!((&sent[..7], &sent[8..]), (&whole[..], &held[..]), "behind all of it");
+    let mut rig = drive(&["reorder:ms=300"]);
+    assert_eq!(ask(&mut rig, WRITE), SILENCE);
+    assert_eq!(rig.advance(299 * MS), SILENCE);
+    assert_eq!(rig.advance(MS), frame(WRITE), "alone");
+    for _ in 0..2 {
+        assert_eq!(ask(&mut rig, WRITE), SILENCE);
+        assert_eq!(ask(&mut rig, READ), [&whole[..], &held].concat(), "in pairs");
+    }
+}
+
+/// On a line that takes time, it begins when the other has ended.
+#[test]
+fn a_held_reply_follows_at_the_pace_of_the_line() {
+    let pacing = drivemu::medium::LineBehaviour {
+        pacing: drivemu::medium::Pacing::Line,
+        ..Default::default()
+    };
+    let arrives = |specs: &[&str]| {
+        let mut rig = drive(specs).with_line_behaviour(pacing.clone());
+        (0..2).for_each(|_| assert_eq!(ask(&mut rig, WRITE), SILENCE));
+        let first = (0..1000).find(|_| !rig.advance(MS).is_empty()).expect("a reply");
+        let next = (0..1000).find(|_| !rig.advance(MS).is_empty()).expect("another");
+        (first, next)
+    };
+    let (first, next) = arrives(&["reorder:count=1"]);
+    assert!(first > 0 && next > 5, "8 characters take more than 5 ms: {first}, {next}");
 }
 
 #[test]

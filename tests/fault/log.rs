@@ -31,6 +31,7 @@ fn each_kind_as_json() {
             "wrong_unit" => ("wrong_unit", json!({"to": 2})),
             "wrong_function" => ("wrong_function:to=6", json!({"to": 6})),
             "exception" => ("exception:code=4", json!({"code": 4})),
+            "reorder" => ("reorder", json!({"ahead": false})),
             "lose_request" | "lose_reply" | "bad_crc" | "late" | "duplicate" | "busy" | "echo" => {
                 (kind.name, json!({}))
             }

@@ -95,6 +95,7 @@ async fn a_master_notices_each_kind() {
             "garbage" => ("garbage:count=1", [Seen::Value, Seen::Value]),
             "delay" => ("delay:count=1,ms=200", [Seen::Slowly, Seen::Value]),
             "late" => ("late:count=1", [Seen::Silence, Seen::Value]),
+            "reorder" => ("reorder:count=1", [Seen::Silence, Seen::Value]),
             "duplicate" => ("duplicate:count=1", [Seen::Value, Seen::Value]),
             "split" => ("split:count=1,gap_ms=200", [Seen::Slowly, Seen::Value]),
             "wrong_unit" => ("wrong_unit:count=1", [Seen::Bad, Seen::Value]),

@@ -68,6 +68,7 @@ fn each_kind_lets_the_answer_arrive_or_not() {
         let (spec, want) = match kind.name {
             "delay" => ("delay:ms=6000", 1),
             "split" => ("split:gap_ms=6000", 1),
+            "reorder" => ("reorder:ms=6000", 1),
             "lose_reply" | "bad_crc" | "flip_bits" | "truncate" | "late" | "wrong_unit"
             | "wrong_function" => (kind.name, 1),
             "exception" => ("exception:code=4", 0),

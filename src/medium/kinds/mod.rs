@@ -100,6 +100,7 @@ kinds! {
     garbage::LeadingBytes,
     delay::Delay,
     late::Late,
+    reorder::Reorder,
     duplicate::Duplicate,
     split::Split,
     wrong_unit::WrongUnit,
