@@ -36,7 +36,6 @@ use links::{LineInput, Links};
 use output::OutputQueue;
 use repeat_detector::RepeatDetector;
 use stations::Stations;
-use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// Bytes that a line looks at before it is asked what it heard.
@@ -240,15 +239,6 @@ impl Bus {
     /// One drive as it is now.
     pub fn view(&self, id: DriveId) -> View<'_> {
         self.drive(id).at(self.now)
-    }
-
-    /// As [`Drive::next_time_when`].
-    pub fn next_time_when(
-        &self,
-        id: DriveId,
-        side: impl Fn(View<'_>) -> Ordering,
-    ) -> Option<Instant> {
-        self.drive(id).next_time_when(self.now, side)
     }
 
     /// The last wake-ups, the latest one last: for the message of a test that fails.

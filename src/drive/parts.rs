@@ -299,7 +299,7 @@ impl Parts {
     }
 
     /// Reports a motion that has started.
-    fn report_start(&mut self, started: axis::Started) {
+    fn report_start(&mut self, started: axis::SegmentStart) {
         self.report_axis(started.segment);
         if let Some(at) = started.endless {
             self.effects.change(Change::ChainEnded { at, why: Ignored::NoMotion });

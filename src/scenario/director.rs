@@ -218,6 +218,10 @@ impl Director {
 
     fn next_poll(&self, bus: &Bus) -> Option<Instant> {
         let step = self.steps.get(self.next)?;
+        let next_time = |condition: &super::Condition| {
+            let drive = bus.drive(condition.drive);
+            drive.next_time_when(bus.now(), |view| condition.side(view))
+        };
         let mut all = vec![self.limit];
         match self.state {
             StepState::Repeats { at, .. } => all.push(Some(at)),
@@ -225,12 +229,10 @@ impl Director {
                 Trigger::At(at) => Some(at),
                 Trigger::Wait(time) => Some(self.since + time),
                 Trigger::After { .. } => None,
-                Trigger::When(it) => bus.next_time_when(it.drive, |drive| it.side(drive)),
+                Trigger::When(condition) => next_time(&condition),
             }),
             StepState::Expects { until } => {
                 all.push(Some(until));
-                let next_time =
-                    |it: &super::Condition| bus.next_time_when(it.drive, |drive| it.side(drive));
                 all.extend(step.expect.iter().map(next_time));
             }
         }

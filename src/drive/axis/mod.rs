@@ -16,7 +16,7 @@ mod settings;
 
 pub(super) use homing::may_start_by_input as may_home_by_input;
 pub(super) use observe::AxisView;
-pub(super) use orders::Started;
+pub(super) use orders::SegmentStart;
 pub(super) use report::change;
 
 use super::context::DriveContext;

@@ -13,7 +13,7 @@ use crate::vocabulary::{Input, Lasts, Setting, Target};
 
 /// A motion that has started.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(in crate::drive) struct Started {
+pub(in crate::drive) struct SegmentStart {
     /// The position segment that it is.
     pub(in crate::drive) segment: Option<u16>,
     /// The segment at which its chain has gone round without moving anything, and ends.
@@ -85,7 +85,7 @@ impl Axis {
         &mut self,
         cx: DriveContext<'_>,
         input: Input,
-    ) -> Result<Started, Ignored> {
+    ) -> Result<SegmentStart, Ignored> {
         match input {
             Input::MoveStart => {
                 let interrupt = self.motor.phase() == Phase::Running;
@@ -108,7 +108,7 @@ impl Axis {
             }
             _ => self.start_velocity_segment(cx)?,
         }
-        Ok(Started::default())
+        Ok(SegmentStart::default())
     }
 
     /// The edge that a chain may wait for has come.
@@ -124,7 +124,7 @@ impl Axis {
         &mut self,
         cx: DriveContext<'_>,
         out: &mut EffectQueue,
-    ) -> Option<Started> {
+    ) -> Option<SegmentStart> {
         let why = self.segments.chain.due(cx.now)?;
         let (from, to) = (self.segments.number, self.segments.next(cx));
         let started = segments::target_of(cx.registers, to).and_then(|_| {
@@ -149,13 +149,13 @@ impl Axis {
         cx: DriveContext<'_>,
         number: u16,
         chained: bool,
-    ) -> Result<Started, Ignored> {
+    ) -> Result<SegmentStart, Ignored> {
         let running = self.segments.runs_by_edge();
         let absolute = segments::target_of(cx.registers, number)? == Target::Absolute && !running;
         self.motor.may_start(chained || running)?;
         self.go_to(cx, MoveRows::Segment(number), absolute, chained || running)?;
         let goes_on = self.segments.begin(cx, &self.motor, &self.origin, number);
-        Ok(Started { segment: Some(number), endless: (!goes_on).then_some(number) })
+        Ok(SegmentStart { segment: Some(number), endless: (!goes_on).then_some(number) })
     }
 
     /// By level it needs no start: it has been wanted since the level came. By an edge it may take the place of one that

@@ -14,7 +14,7 @@ pub(in crate::drive) fn change(
     effect: Effect,
     segment: Option<u16>,
 ) -> Option<Change> {
-    let units = Units { axis, cx };
+    let units = AxisUnits { axis, cx };
     let at = |position: i64| units.at(position);
     let method = axis.method;
     Some(match effect {
@@ -58,12 +58,12 @@ pub(in crate::drive) fn change(
 
 /// The drive's coordinate and units.
 #[derive(Clone, Copy)]
-struct Units<'a> {
+struct AxisUnits<'a> {
     axis: &'a Axis,
     cx: DriveContext<'a>,
 }
 
-impl Units<'_> {
+impl AxisUnits<'_> {
     /// A position of the motor as the position register shows it.
     fn at(self, position: i64) -> i64 {
         let registers = self.cx.registers;
