@@ -335,3 +335,45 @@ impl TtyPlace {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::future::poll_fn;
+    use tokio::time::timeout;
+
+    async fn next(port: &mut TtyPort) -> Option<PortEvent> {
+        let mut input = [0; INPUT];
+        let event = poll_fn(|cx| port.poll_event(cx, &mut input));
+        timeout(std::time::Duration::from_millis(200), event).await.ok()
+    }
+
+    async fn heard(far: &mut Pty) -> Vec<u8> {
+        let mut bytes = [0; INPUT];
+        let read = poll_fn(|cx| far.poll_read(cx, &mut bytes));
+        let read = timeout(std::time::Duration::from_secs(2), read).await.unwrap().unwrap();
+        bytes[..read.len].to_vec()
+    }
+
+    /// What is written before leaves in the old settings, what comes behind in the new ones.
+    #[tokio::test]
+    async fn a_reply_leaves_before_the_port_moves() {
+        let mut far = Pty::open(None).unwrap();
+        let path = far.path().display().to_string();
+        let mut port = TtyPort::serial("line".into(), path, "9600-8N2".parse().unwrap()).unwrap();
+        let Some(PortEvent::Opened(client)) = next(&mut port).await else { panic!("not open") };
+        port.send(client, b"old");
+        port.set_line("57600-8N1".parse().unwrap());
+        port.send(client, b"new");
+        assert_eq!(heard(&mut far).await, b"old");
+        assert_eq!(far.master_settings().unwrap(), (9600, 2));
+        assert!(next(&mut port).await.is_none(), "nothing has happened");
+        assert_eq!(far.master_settings().unwrap(), (57600, 1));
+        assert_eq!(heard(&mut far).await, b"new");
+        drop(far);
+        let lost = next(&mut port).await;
+        assert!(matches!(lost, Some(PortEvent::Lost(it)) if it == client), "{lost:?}");
+        assert!(!port.is_anything_waiting());
+        assert!(next(&mut port).await.is_none(), "there is nothing to open again");
+    }
+}
