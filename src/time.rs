@@ -1,7 +1,7 @@
 //! Time as a value: an instant of the emulated world, and durations as people write them.
 //!
-//! Nothing here, or in anything below the shell, can ask what time it is. An [`Instant`] counts from
-//! the power-on of the world; the shell maps it to the wall, a test just says it.
+//! Nothing here, or in anything below the server, can ask what time it is. An [`Instant`] counts from
+//! the power-on of the world; the server maps it to the wall, a test just says it.
 
 use std::fmt;
 use std::ops::{Add, AddAssign, Sub};

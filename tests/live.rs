@@ -5,7 +5,6 @@ use crate::kit::{bench_line, rig};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Command, CommandError, DriveOrder, Reply};
 use drivemu::event::{DeviceFault, DriveId};
-use drivemu::server::InboxError;
 use drivemu::testkit::{Rig, hex, live, to_hex};
 use drivemu::vocabulary::AlarmCause;
 use drivemu::wire::{crc16, rtu};
@@ -154,7 +153,7 @@ async fn commands_to_a_line_that_is_served() {
     let raise = |drive| Command::Drive(drive, DriveOrder::Raise(AlarmCause::OverVoltage));
     assert_eq!(line.command(raise(FIRST)).await, Ok(Reply::Done));
     let refused = line.command(raise(DriveId(7))).await.expect_err("there is one drive");
-    assert_eq!(refused, InboxError::Refused(CommandError::NoDrive(7)));
+    assert_eq!(refused, live::InboxError::Refused(CommandError::NoDrive(7)));
     let request = rtu::encode(1, &hex(STATUS).expect("hex")[1..]);
     master.write_all(&request).await.expect("somebody reads");
     let mut answer = vec![0; healthy.split(' ').count() + 2];
@@ -163,7 +162,7 @@ async fn commands_to_a_line_that_is_served() {
     line.stop().await;
     serving.await.expect("no panic").expect("a clean end");
     assert_eq!(master.read(&mut [0; 8]).await.expect("an end"), 0);
-    assert_eq!(line.command(raise(FIRST)).await, Err(InboxError::Ended));
+    assert_eq!(line.command(raise(FIRST)).await, Err(live::InboxError::Ended));
 }
 
 /// A reply that was held back for the next request leaves with it, on the stream.

@@ -1,7 +1,7 @@
 //! A bench: lines, the drives on each line, what each drive is set to.
 //!
 //! Built from a YAML file ([`parse`](fn@parse)) or from command-line flags and tests ([`DeviceSpec`]). Pure: it
-//! opens nothing. Model files are fetched through a [`Library`], which is the shell's to provide.
+//! opens nothing. Model files are fetched through a [`Library`], which is the server's to provide.
 
 mod device;
 mod faults;

@@ -2,7 +2,7 @@
 //!
 //! [`StateFile`] writes it, [`Saved`] reads it. Rows go by their ids, so that a file outlives a change of the
 //! register map, and only those are in it that somebody has stored or set. Deliberately no file system; where
-//! the text lies, and when it is safe there, is the shell's. The format: docs/state.md.
+//! the text lies, and when it is safe there, is the server's. The format: docs/state.md.
 
 mod read;
 mod write;

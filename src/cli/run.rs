@@ -1,4 +1,4 @@
-//! `drivemu run`: flags or a bench file become a bench, and the shell runs it.
+//! `drivemu run`: flags or a bench file become a bench, and the server runs it.
 
 use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
 use super::state::StateArg;

@@ -1,4 +1,4 @@
-//! The shell: the only place that waits, opens and asks what time it is.
+//! The server: the only place that waits, opens and asks what time it is.
 //!
 //! One task owns one line: a [`LineServer`] takes bytes from its ports and commands from its inbox, sleeps until the
 //! bus wants to be woken, and sends what the bus gives it. [`run`](fn@run) opens all lines of a bench, says that it is

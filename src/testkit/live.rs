@@ -32,12 +32,14 @@ use super::Rig;
 use super::rig::InUse;
 use crate::bus::Carrier;
 use crate::server::port::{MASTER, StreamPort};
-use crate::server::{Clock, LineHandle, LineServer, Logger};
+use crate::server::{Clock, LineServer, Logger};
 use std::future::Future;
 use std::io;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use tokio::io::DuplexStream;
+
+pub use crate::server::{InboxError, LineHandle};
 
 /// A stream to put a master on, in place of the one that asked `rig` until now, and the future that serves its drives
 /// at the other end. Run the future beside the master (`tokio::spawn`, `try_join!`): the rig's time goes on when it is
