@@ -196,7 +196,7 @@ impl Bus {
 
     /// Takes bytes that arrived on `link` at `now`, sent at `baud` rather than the speed of the line: no drive
     /// understands them.
-    pub fn receive_unheard(&mut self, now: Instant, link: LinkId, bytes: &[u8], baud: u32) {
+    pub fn receive_mismatched(&mut self, now: Instant, link: LinkId, bytes: &[u8], baud: u32) {
         self.advance_to(now);
         bytes.chunks(CHUNK).for_each(|chunk| self.medium.on_bytes(self.now, link, chunk));
         self.place_transmits();

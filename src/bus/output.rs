@@ -15,7 +15,7 @@ pub enum Output {
     /// A drive has stored something: what it keeps over power-off has to be safe before anything that comes
     /// behind this leaves, or an answer confirms what a power failure takes back.
     Keep(DriveId),
-    /// A whole answer, or a lump of one where the line has an adapter, to be sent in one write.
+    /// A whole reply, or a chunk of one where the line has an adapter, to be sent in one write.
     Transmit {
         /// Where to.
         link: LinkId,

@@ -10,7 +10,7 @@ use crate::vocabulary::Action;
 use crate::wire::Pdu;
 use std::collections::BTreeMap;
 
-/// The last request that each drive executed, where it was an order whose answer nobody heard.
+/// The last request that each drive executed, where it was a command whose reply did not arrive.
 #[derive(Debug, Default)]
 pub struct RepeatDetector {
     orders: BTreeMap<DriveId, LastCommand>,

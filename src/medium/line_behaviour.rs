@@ -8,9 +8,9 @@ use std::fmt;
 /// What a line always does. By default it has none: a reply leaves at once and in one piece.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LineBehaviour {
-    /// When replies leave.
+    /// Reply timing.
     pub pacing: Pacing,
-    /// An adapter hands bytes to the master in lumps, and keeps what fills none for so long.
+    /// Latency timer of a USB adapter at the master, 1 ms to 255 ms: bytes arrive in chunks when it expires.
     pub chunk: Option<Duration>,
     /// The master hears what it says.
     pub echo: bool,
@@ -18,13 +18,13 @@ pub struct LineBehaviour {
     pub chatter: Option<Chatter>,
 }
 
-/// When replies leave.
+/// Reply timing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Pacing {
-    /// As soon as a request is understood.
+    /// Immediately after the request.
     #[default]
     Ideal,
-    /// No earlier than the silence behind the request, the drive and the reply's characters take.
+    /// After the end-of-frame silence, the reply delay of the drive and the character times of the reply.
     Line,
 }
 
@@ -70,7 +70,7 @@ impl LineBehaviour {
 }
 
 impl fmt::Display for LineBehaviour {
-    /// `paced replies, lumps of 16ms, echo, chatter of units 7, 8`.
+    /// `paced replies, chunks of 16ms, echo, chatter of units 7, 8`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let chatter = self.chatter.as_ref().map(|chatter| {
             let units: Vec<_> = chatter.units.iter().map(u8::to_string).collect();

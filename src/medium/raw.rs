@@ -14,31 +14,31 @@ use {
     std::borrow::Cow,
 };
 
-/// One rule. Of all rules of a line that hold for a request, the first acts.
+/// A fault rule. Of all rules of a line that match a request, the first acts.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawFault {
-    /// Its name in the log, and what its random numbers depend on besides the seed. Default: its kind, with a
-    /// number behind it where that is taken.
+    /// Name in the log; the random draws depend on it and on the seed. Default: the kind, with a number appended where
+    /// that is already used.
     pub name: Option<String>,
-    /// What it does.
+    /// The kind of fault, or a preset.
     #[serde(rename = "do")]
     pub act: RawAct,
-    /// Only requests to this unit.
+    /// Only requests to this unit; 0 is a broadcast.
     pub unit: Option<u8>,
-    /// Only requests with this function code, or with one of these.
+    /// Only requests with this function code, or with one of a list.
     pub function: Option<RawFunctions>,
-    /// Only requests that touch this register: an address, a span of addresses, or the name of a row.
+    /// Only requests that access this address, this address range, or this register.
     pub register: Option<RawFaultRegister>,
-    /// Only from this second of emulated time on.
+    /// Only from this emulated time on, in seconds.
     pub from: Option<f64>,
-    /// Only before this second of emulated time.
+    /// Only before this emulated time, in seconds.
     pub until: Option<f64>,
     /// Let this many requests pass first.
     pub skip: Option<u64>,
-    /// Then act on every Nth: 2 is the 2nd, the 4th ...
+    /// Then act on every Nth: 2 is the 2nd, the 4th ... Default 1.
     pub every: Option<u64>,
-    /// Act with this probability, where it is a request's turn.
+    /// Act with this probability, above 0 and at most 1; default: always.
     pub probability: Option<f64>,
     /// Act this many times and no more.
     pub count: Option<u64>,

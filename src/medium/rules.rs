@@ -15,14 +15,14 @@ pub struct FaultRule {
     pub name: String,
     /// When it acts.
     pub when: When,
-    /// What it does.
+    /// The kind of fault, or a preset.
     pub effect: FaultEffect,
 }
 
 /// When a rule acts. Requests that `unit` to `until` hold for are its occurrences; the others choose among them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct When {
-    /// Only requests to this unit.
+    /// Only requests to this unit; 0 is a broadcast.
     pub unit: Option<u8>,
     /// Only these functions; empty is every one.
     pub functions: Vec<u8>,

@@ -69,7 +69,7 @@ impl LineRules {
 /// Where the unit address comes from.
 #[derive(Debug)]
 pub struct UnitRule {
-    /// The row.
+    /// The row that holds the code.
     pub row: RowId,
     /// Number of DIP switches; 0 without any.
     pub switches: u8,
@@ -89,9 +89,9 @@ pub struct WireFormat {
 /// Which word of a pair stands at the lower address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RegisterOrder {
-    /// The high one.
+    /// The high word at the lower address.
     HighFirst,
-    /// The low one.
+    /// The low word at the lower address.
     LowFirst,
 }
 
@@ -102,7 +102,7 @@ pub enum WordOrder {
     Fixed(RegisterOrder),
     /// By value of a row.
     Row {
-        /// The row.
+        /// The row that selects the word order.
         row: RowId,
         /// Register order by value.
         codes: BTreeMap<i64, RegisterOrder>,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// An option of a model, and what was chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OptionInfo {
-    /// Its name.
+    /// Name as in `--set NAME=CHOICE`.
     pub name: String,
     /// What it is about.
     pub about: String,
@@ -18,7 +18,7 @@ pub struct OptionInfo {
     pub default: String,
     /// The choice in force.
     pub chosen: String,
-    /// All choices.
+    /// Names of the choices, the default included.
     pub choices: Vec<String>,
 }
 

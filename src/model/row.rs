@@ -78,7 +78,7 @@ pub enum Access {
     Read,
     /// Write only.
     Write,
-    /// Both.
+    /// Reads and writes.
     Both,
 }
 
@@ -130,7 +130,7 @@ pub struct Window {
 pub enum Located {
     /// Word `word` of a row, reached through a window that writes to `layer`.
     Word {
-        /// The row.
+        /// The row at that address.
         row: RowId,
         /// 0, or 1 for the second word of a pair.
         word: u8,

@@ -12,7 +12,7 @@ use crate::time::{Duration, Instant};
 /// What became of a step that expects something, or that failed otherwise.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
-    /// The step.
+    /// Name of the step.
     pub step: String,
     /// When it was settled.
     pub at: Instant,

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// One step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScenarioStep {
-    /// Its name.
+    /// Name in the log and the report.
     pub name: String,
     /// What it waits for.
     pub trigger: Trigger,
@@ -48,7 +48,7 @@ pub enum Trigger {
 /// Something that holds for a drive or does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition {
-    /// The drive.
+    /// The drive that is observed.
     pub drive: DriveId,
     /// What is looked at.
     pub subject: Subject,
@@ -70,7 +70,7 @@ pub enum Subject {
 /// What a number has to be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Test {
-    /// This.
+    /// Equal to this number; a signal is 1 or 0.
     Is(i64),
     /// More than the first and less than the second, as far as they are given.
     Within(Option<i64>, Option<i64>),

@@ -38,7 +38,7 @@ impl Clock {
 
     /// Sleeps until the emulated time is `at`; for ever without one.
     ///
-    /// It may wake a little early or late: whoever sleeps asks [`Clock::now`] again.
+    /// It may wake slightly early or late: read [`Clock::now`] again afterwards.
     pub async fn until(&self, at: Option<Instant>) {
         let Some(at) = at else { return std::future::pending().await };
         let elapsed = at.since(self.from).div_f64(self.rate);

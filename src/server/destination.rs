@@ -160,7 +160,7 @@ impl Destination {
 /// What became of a text.
 #[derive(Debug)]
 pub enum Written {
-    /// It is in this file.
+    /// A regular file, by its identity on the file system.
     File(FileId),
     /// It is on its way to something that is no file.
     UnderWay(Sink),
@@ -170,7 +170,7 @@ fn own(file: File) -> Open {
     Box::new(move || Ok(Box::new(file)))
 }
 
-/// `/dev/stdout` and its kin: to open them anew would give a file another place to write at.
+/// `/dev/stdout` and the like: opening them again would write at another offset of the same file.
 fn own_stream(place: &Path) -> Option<FileKind> {
     let folder = place.parent()?;
     let ours = Path::new("/proc").join(std::process::id().to_string()).join("fd");

@@ -1,10 +1,10 @@
-//! The inbox of a line that is being served: the one way in for whoever is not a master.
+//! The inbox of a line that is being served: the only input besides its masters.
 
 use crate::bus::{Command, CommandError, Reply};
 use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 
-/// Messages that may wait; whoever sends more waits too.
+/// Capacity in messages; sending blocks when it is full.
 const ROOM: usize = 16;
 
 /// Gives commands to a line that is being served, from any task.

@@ -1,7 +1,7 @@
 //! Reads files that people give, model files among them: whole, as text, and not without end.
 //!
 //! Deliberately one bound for all of them: a file beyond it is no model, bench, scenario or state file, whatever it
-//! says. What is no file, such as a FIFO, is read too, if somebody writes it.
+//! says. A path that is not a regular file, such as a FIFO, is read too, if it has a writer.
 
 use crate::bench::{BuiltinLibrary, Library, no_model};
 use crate::problem::bounds;
@@ -20,7 +20,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Reads the file at `path` as text.
 ///
 /// # Errors
-/// What the file system says; `FileTooLarge` beyond [`bounds::SIZE`] bytes, `TimedOut` if nobody writes what is no file,
+/// What the file system says; `FileTooLarge` beyond [`bounds::SIZE`] bytes, `TimedOut` if a FIFO has no writer,
 /// `IsADirectory`, `InvalidData` for what is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     // To open a FIFO waits for its writer, unless told not to.

@@ -30,7 +30,7 @@ const SLICE: Duration = Duration::from_millis(50);
 /// That the machine is too slow is told once.
 static LAGS: AtomicBool = AtomicBool::new(false);
 
-/// Somebody who is told what happens on lines.
+/// A subscriber to the events of lines.
 pub trait Subscriber: fmt::Debug + Send {
     /// `event` has happened on the line called `name`, whose drives are on `bus`.
     fn tell(&mut self, event: &Event, name: &str, bus: &Bus);
@@ -97,7 +97,7 @@ impl LineServer {
         self.over = Some(over);
     }
 
-    /// Tells somebody more what happens on it.
+    /// Adds a subscriber to the events of the line.
     pub fn subscribe(&mut self, subscriber: Box<dyn Subscriber>) {
         self.subscribers.push(subscriber);
     }
@@ -151,7 +151,7 @@ impl LineServer {
         loop {
             self.send_all();
             let (clock, due) = (self.clock, self.due());
-            // Whoever waits at the inbox can wait for the reply: no port is starved by it. A port can flood us.
+            // A sender waits for its reply, so the inbox starves no port. A port can flood us.
             let next = tokio::select! {
                 biased;
                 Some(message) = self.inbox.0.recv() => Next::Message(message),
@@ -173,7 +173,7 @@ impl LineServer {
                     let now = self.advance();
                     let done = self.bus.command(now, command);
                     self.director.poll(&mut self.bus);
-                    // Nobody may wait for it any more.
+                    // The sender may have given up waiting.
                     let _ = reply.send(done);
                 }
                 Next::Port(_, PortEvent::Ended(end)) if self.ports.have_ended() => return end,
@@ -224,7 +224,7 @@ impl LineServer {
     fn receive(&mut self, port: PortId, link: LinkId, bytes: &[u8]) {
         if let Some(baud) = self.look_at_master(port) {
             let now = self.advance();
-            self.bus.receive_unheard(now, link, bytes, baud);
+            self.bus.receive_mismatched(now, link, bytes, baud);
         } else {
             let at = self.advance_to(self.arrival(link));
             self.bus.receive(at, link, bytes);
@@ -233,7 +233,7 @@ impl LineServer {
     }
 
     /// Tells, once, if the master's port is set to something that no wire would carry. Gives its baud if that is why
-    /// nobody understands it.
+    /// no drive understands it.
     fn look_at_master(&mut self, port: PortId) -> Option<u32> {
         let master = self.ports.master(port, self.wire.mode.settings)?;
         let heard = !self.wire.match_baud || master.same_baud();
@@ -243,7 +243,7 @@ impl LineServer {
         (!heard).then_some(master.baud)
     }
 
-    /// Sends what there is to send. On the way events go to whoever wants them, and what drives have stored to the disk.
+    /// Sends what there is to send. Events go to the subscribers, and what drives have stored to the disk.
     fn send_all(&mut self) {
         while let Some(output) = self.bus.poll_output() {
             match output {
@@ -326,7 +326,7 @@ impl LineServer {
     /// The time at which input arrived on `link` that was just read.
     ///
     /// Input that waited while this process was kept from running is older than it looks: it came before the silence
-    /// that nobody has heard yet, and before a watchdog or a step of a scenario that is overdue. What else a drive did by
+    /// that was not observed yet, and before a watchdog or a step of a scenario that is overdue. What else a drive did by
     /// itself meanwhile says nothing about when it came: a watchdog that it refreshes counts from as late as can be.
     fn arrival(&self, link: LinkId) -> Instant {
         let now = self.clock.now();

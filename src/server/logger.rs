@@ -1,6 +1,6 @@
 //! Writes the event log to stdout and to a file, each behind a queue of its own.
 //!
-//! A pipe that nobody reads must not stop a drive: what it is too slow for is lost and counted, and the log says how
+//! A pipe that is not read must not stop a drive: lines for which it is too slow are lost and counted, and the log says how
 //! much when it can write again. An output that fails ends there; that is told at once, and again when the run ends.
 
 use super::destination::Destination;
@@ -103,7 +103,7 @@ impl Logger {
 
 impl Drop for Logger {
     fn drop(&mut self) {
-        // Whoever wants to know has asked.
+        // A caller that needs the result has asked for it.
         self.finish();
     }
 }
@@ -139,7 +139,7 @@ impl LogOutput {
     }
 }
 
-/// Stdout, whose reader may go away (`| head`): then nobody wants the rest.
+/// Stdout, whose reader may go away (`| head`): the rest is not needed then.
 struct Stdout;
 
 impl Write for Stdout {

@@ -59,7 +59,7 @@ impl OutputFiles {
         }
     }
 
-    /// Every port is open: says so to whoever waits for the ready file, for whom the state file is there by then.
+    /// Every port is open: writes the ready file; the state file exists by then.
     ///
     /// # Errors
     /// What the file system says.

@@ -172,7 +172,7 @@ impl PathLock {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
                 Err(io::Error::new(io::ErrorKind::ResourceBusy, "used by a running drivemu"))
             }
-            // Where no mark can be made at all, nobody else has made one.
+            // Where no lock can be made at all, no other run has made one.
             socket => Ok(Self { _socket: socket.ok() }),
         }
     }

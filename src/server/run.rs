@@ -1,4 +1,4 @@
-//! Runs a bench: opens all its ports, says so, serves them until somebody ends it.
+//! Runs a bench: opens all its ports, reports them, and serves them until the run is ended.
 
 use super::clock::Clock;
 use super::destination::Destination;
@@ -68,7 +68,7 @@ pub enum RunError {
     /// A line has ended by itself, which none does unless this program is wrong.
     #[error("a line ended unexpectedly: {}", .0.as_deref().unwrap_or("no reason"))]
     LineEnded(Option<String>),
-    /// The system lets nobody listen for signals.
+    /// The operating system does not let us listen for signals.
     #[error("cannot listen for signals: {0}")]
     Signals(io::Error),
 }
@@ -134,7 +134,7 @@ fn lines(bench: &Bench, options: &RunOptions) -> (Vec<LineHandle>, Vec<LineServe
     bench.lines.iter().map(line).unzip()
 }
 
-/// Opens all ports and says so. From then on, whoever is told may end the run.
+/// Opens all ports and says so. From then on the run can be ended from outside.
 fn open_all(
     bench: &Bench,
     lines: &mut [LineServer],
@@ -147,7 +147,7 @@ fn open_all(
         outputs.attach(server);
         endpoints.push(open(line, server, &options.base).map_err(RunError::Port)?);
     }
-    // Whoever is told that the run is ready may look into it.
+    // The state file must exist when the run reports that it is ready.
     outputs.save()?;
     info!("seed {}", options.seed);
     bench.lines.iter().zip(&endpoints).for_each(|(line, endpoints)| introduce(line, endpoints));
@@ -213,8 +213,8 @@ impl Started {
     }
 }
 
-/// The signals that end a run: SIGINT, SIGTERM and SIGHUP, from the moment this is made, since whoever is told that the
-/// run is ready may end it at once. Under `nohup` a hang-up ends nothing.
+/// The signals that end a run: SIGINT, SIGTERM and SIGHUP, from the moment this is made, since a
+/// process that waits for the ready file may end the run at once. Under `nohup` a hang-up ends nothing.
 #[derive(Debug)]
 struct Stop {
     int: Signal,
@@ -229,7 +229,7 @@ impl Stop {
         Ok(Self { int, term, hang_up })
     }
 
-    /// Waits until somebody wants the run to end and says with which signal.
+    /// Waits for a signal that ends the run, and returns it.
     async fn requested(&mut self) -> &'static str {
         tokio::select! {
             _ = self.int.recv() => "SIGINT",
@@ -239,7 +239,7 @@ impl Stop {
     }
 }
 
-/// Has whoever started us asked to ignore SIGHUP? Where the system does not say, nobody has.
+/// Was the process started with SIGHUP ignored? No where the system does not say.
 fn is_hang_up_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,6 +1,6 @@
 //! The state file on the disk: taken at the start, and written whole each time a drive has stored something.
 //!
-//! Beside the file first, then moved over it, and on the disk before anybody goes on: whatever ends the
+//! Beside the file first, then moved over it, and synced to disk before the run continues: whatever ends the
 //! process, the file is the old one or the new one. A disk that fails does not stop the drives.
 
 use super::destination::{FileId, folder, places};
@@ -112,7 +112,7 @@ impl Store {
     }
 
     /// Makes sure, with `new` at `beside` locked, that no other run has taken the file: one that was started after
-    /// somebody had removed it found nothing that was locked. Whoever puts a file in place has to lock `beside` first.
+    /// it was removed found nothing that was locked. To put a file in place, a run has to lock `beside` first.
     fn still_ours(&self, new: &File, beside: &Path) -> io::Result<()> {
         if FileId::of(beside) != Some(FileId::from(&new.metadata()?)) {
             return Err(io::Error::other("replaced by another run"));
@@ -121,7 +121,7 @@ impl Store {
         let id = |file: &File| file.metadata().map(|it| FileId::from(&it));
         match &self.held {
             Some(held) if id(held)? == id(&there)? => Ok(()),
-            // Somebody's edit or copy is not locked, and is overwritten as ever.
+            // A file that was edited or copied there is not locked, and is overwritten.
             _ => lock(&there),
         }
     }

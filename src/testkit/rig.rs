@@ -36,7 +36,7 @@ pub struct Rig {
     log: Vec<String>,
 }
 
-/// A rig in the hands of somebody who serves it.
+/// A rig that has been handed over to a server.
 #[cfg(feature = "cli")]
 #[derive(Debug)]
 pub(super) struct InUse {
@@ -68,8 +68,8 @@ impl Rig {
     pub fn model(text: &str, choices: &Choices, spec: &DeviceSpec) -> Result<Self, Vec<Problem>> {
         let model = Arc::new(load(text, choices)?);
         let device = Device::new(model, spec).map_err(|problems| {
-            let problem = |it: crate::bench::SpecProblem| {
-                Problem::value(Default::default(), it.what).advise_if(it.advice)
+            let problem = |problem: crate::bench::SpecProblem| {
+                Problem::value(Default::default(), problem.what).advise_if(problem.advice)
             };
             problems.into_iter().map(problem).collect::<Vec<_>>()
         })?;
@@ -190,7 +190,7 @@ impl Rig {
         self.verdicts()
     }
 
-    /// A line that nobody has switched on.
+    /// A line that is not powered yet.
     fn off(line: BenchLine) -> Self {
         let framing = line.wire.framing(1.0);
         let mut bus = Bus::new();
@@ -277,7 +277,7 @@ impl Rig {
         super::to_hex(&answer[..answer.len() - 2])
     }
 
-    /// Puts `bytes` on the line, lets it fall silent where somebody waits for that, and gives back what came.
+    /// Puts `bytes` on the line, lets it fall silent where a drive waits for that, and returns what was received.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.used = true;
         self.bus.receive(self.now, self.link, bytes);

@@ -7,9 +7,9 @@
 //! - axes never jump and never leave their hard stops;
 //! - once a line has been silent, each drive on it hears what it is asked;
 //! - what will happen lies in the future once everything has been taken from the bus;
-//! - the same seed gives the same bytes and the same events, however often somebody polling.
+//! - the same seed gives the same bytes and the same events, however often the line is polled.
 //!
-//! For whoever writes a model: a soak test finds what no list of cases does.
+//! For authors of models: a soak test finds what no list of cases does.
 //!
 //! ```
 //! use drivemu::testkit::soak::{self, Options};
@@ -86,7 +86,7 @@ pub struct Report {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{}", self.text())]
 pub struct SoakFailure {
-    /// The seed.
+    /// Seed that reproduces the run.
     pub seed: u64,
     /// When, in emulated time, with all steps.
     pub at: Instant,
@@ -101,7 +101,8 @@ pub struct SoakFailure {
 impl Options {
     /// Drives of all embedded models, and 60 things that happen.
     pub fn builtin() -> Self {
-        let load = |it: Builtin| it.load(&Choices::new()).expect("an embedded model is good");
+        let load =
+            |builtin: Builtin| builtin.load(&Choices::new()).expect("an embedded model is good");
         let models = Builtin::all().map(load).map(Arc::new).collect();
         Self { models, steps: 60, bug: None }
     }
@@ -137,7 +138,8 @@ pub fn run(seed: u64, options: &Options) -> Result<Report, SoakFailure> {
     let draws = |part: &str, n: u64| Draws(Fork::new(seed, "soak test", part).stream(n));
     let scene = Scene::draw(seed, &options.models, &mut draws("scene", 0));
     let steps = step::draw(&scene, options.steps, |n| draws("step", n));
-    let models: Vec<_> = scene.line.devices.iter().map(|it| it.model.name.clone()).collect();
+    let models: Vec<_> =
+        scene.line.devices.iter().map(|device| device.model.name.clone()).collect();
     let plays = |steps: &[SoakStep]| both(&scene, steps, draws("polling", 0), options.bug);
     match plays(&steps) {
         Ok(Played { sent, events }) => Ok(Report { models, sent, events }),
@@ -183,10 +185,7 @@ fn shrink(mut steps: Vec<SoakStep>, fails: impl Fn(&[SoakStep]) -> bool) -> Vec<
         while from < steps.len() {
             let mut fewer = steps.clone();
             fewer.drain(from..steps.len().min(from + size));
-            match fails(&fewer) {
-                true => steps = fewer,
-                false => from += size,
-            }
+            if fails(&fewer) { steps = fewer } else { from += size }
         }
         size /= 2;
     }

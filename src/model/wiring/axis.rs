@@ -130,7 +130,7 @@ pub struct Gear {
 pub struct SettingRow {
     /// What for.
     pub setting: Setting,
-    /// The row.
+    /// The row that holds its value.
     pub row: RowId,
     /// When a value counts that is written to it.
     pub taken: Taken,

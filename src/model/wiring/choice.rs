@@ -41,7 +41,7 @@ impl<T: Copy> Choice<T> {
 /// A row, or one hex digit of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Digit {
-    /// The row.
+    /// The row that decides.
     pub row: RowId,
     /// Which hex digit from the right; `None` is the whole value.
     pub digit: Option<u8>,
@@ -57,7 +57,7 @@ impl Digit {
 /// A row, or one hex digit of it, whose values are codes for something.
 #[derive(Debug)]
 pub struct Coded<T> {
-    /// The row.
+    /// The row that decides.
     pub row: RowId,
     /// Which hex digit from the right; `None` is the whole value.
     pub digit: Option<u8>,

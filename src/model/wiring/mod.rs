@@ -31,7 +31,7 @@ pub struct Wiring {
     pub input_terminals: Option<Terminals<Input>>,
     /// Switches of the machine that reach the drive without a terminal.
     pub machine_inputs: Vec<Input>,
-    /// Input words.
+    /// Words of input functions that a master writes, if the model has any.
     pub input_words: Option<InputWords>,
     /// Rows whose bits are input signals.
     pub input_bits: Vec<(RowId, Vec<(u8, Input)>)>,
@@ -59,7 +59,7 @@ pub struct Wiring {
     pub reactions: Vec<Reaction>,
     /// When the drive is ready.
     pub servo: ServoWiring,
-    /// The axis.
+    /// Units, settings and segments of the axis.
     pub axis: AxisWiring,
     /// How the axis looks for its origin.
     pub homing: Option<HomingRules>,

@@ -1,4 +1,4 @@
-//! Which rows a model goes by, and when a value counts that somebody writes to one.
+//! Which rows a model uses, and when a value written to one takes effect.
 
 use super::{Choice, Counts, HomingRules, Number, Reaction, Wiring};
 use crate::model::{Applies, Model, RowId};

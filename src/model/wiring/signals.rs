@@ -51,7 +51,7 @@ pub struct InputWords {
 pub struct HoldTime {
     /// The row with the time.
     pub row: RowId,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: Unit,
     /// What 0 stands for; `None` for ever.
     pub zero: Option<Duration>,
@@ -62,7 +62,7 @@ pub struct HoldTime {
 pub struct BitOverride {
     /// The row with the bit.
     pub row: RowId,
-    /// The bit.
+    /// Number of the bit, from 0.
     pub bit: u8,
     /// The setting: it is made while this is not 0.
     pub by: Digit,
@@ -71,7 +71,7 @@ pub struct BitOverride {
 /// A row in which a written value triggers an action.
 #[derive(Debug)]
 pub struct CommandRows {
-    /// The row.
+    /// The row that masters write.
     pub row: RowId,
     /// Action by value.
     pub actions: Vec<(i64, Action)>,
@@ -80,7 +80,7 @@ pub struct CommandRows {
 /// A row whose bits trigger actions.
 #[derive(Debug)]
 pub struct Triggers {
-    /// The row.
+    /// The row that masters write.
     pub row: RowId,
     /// Action by bit; of several bits that are set the first in here acts.
     pub actions: Vec<(u8, Action)>,
@@ -102,7 +102,7 @@ pub struct OutputWord {
 /// An output signal, or its opposite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shown {
-    /// The signal.
+    /// The signal that is shown, or whose opposite is.
     pub signal: Output,
     /// Show its opposite.
     pub inverted: bool,
@@ -119,9 +119,9 @@ pub enum Shows {
     OutputWord(u16),
     /// The signals of a row of `input_bits`, of this index, bit by bit.
     InputBits(usize),
-    /// The input terminals.
+    /// The state of the input terminals, one bit each.
     InputTerminals(Monitor),
-    /// The output terminals.
+    /// The state of the output terminals, one bit each.
     OutputTerminals(Monitor),
     /// The `n`th alarm of the past, from 0, the newest.
     PastAlarm(u16),
@@ -141,7 +141,7 @@ pub enum Monitor {
 /// What a write to a row sets off, apart from changing its value.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Reaction {
-    /// Nothing: whoever needs the value reads it.
+    /// None: the value is read when it is needed.
     #[default]
     None,
     /// Input signals may have changed.

@@ -137,7 +137,7 @@ async fn listen(id: ClientId, stream: Arc<TcpStream>, report: Sender<TcpEvent>) 
             Err(e) => break Some(e),
         }
     };
-    // Fails only when the listener is gone, and then nobody asks.
+    // Fails only when the listener is gone, and then no reply is needed.
     let _ = report.send(TcpEvent::Closed(id, end)).await;
 }
 

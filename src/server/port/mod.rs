@@ -32,7 +32,7 @@ pub use tty::{Input, Left, TtyPort};
 /// Bytes that a port hands over at once; a Modbus frame has 260 at most.
 pub const INPUT: usize = 1024;
 
-/// A master at a port: a TCP client, or whoever has a terminal open. Never used twice at one port.
+/// A master at a port: a TCP client, or the program that has a terminal open. Never used twice at one port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ClientId(pub u64);
 

@@ -58,7 +58,7 @@ impl Pty {
     pub fn open(link: Option<&Path>) -> io::Result<Self> {
         let (master, slave, path) = open_pair()
             .map_err(|e| said(e.kind(), format!("cannot open a pseudo-terminal: {e}")))?;
-        // Before anybody can know of it.
+        // Before its path is known to any program.
         let presence = Presence::watch(&path).inspect_err(|error| {
             warn!("{}: cannot detect when a program closes it: {error}", path.display());
         });
@@ -146,19 +146,19 @@ impl Pty {
             if len > 0 {
                 self.unlock();
             }
-            return Input { len, left: Left::Nobody };
+            return Input { len, left: Left::None };
         };
         // Looked at behind the bytes, so that what was sent before a close is read before it is told.
         let since = presence.poll();
         let present = presence.is_anybody_there();
         self.deserted |= since != Since::Same || len > 0 && !present;
         let left = match self.deserted {
-            // Nobody can tell any more which of the bytes are whose; none is lost.
+            // Which bytes came from which program is not known any more; none is lost.
             true if present => Left::Before,
             true if len == 0 => Left::After,
-            _ => Left::Nobody,
+            _ => Left::None,
         };
-        if left != Left::Nobody {
+        if left != Left::None {
             self.deserted = false;
             // Answers to those who have left; the next program has asked nothing yet that was answered.
             let _ = tcflush(&self.slave, QueueSelector::IFlush);
@@ -171,7 +171,7 @@ impl Pty {
 
     /// Sends an answer in one write and says how many of its bytes were taken.
     ///
-    /// Never waits. Fewer than all (or 0) means that nobody has read for some KiB; the rest is lost.
+    /// Never waits. Fewer than all (or 0) means that several KiB have not been read; the rest is lost.
     ///
     /// # Errors
     /// What the system says, never a hang-up.
@@ -243,7 +243,7 @@ fn read(master: BorrowedFd<'_>, buf: &mut [u8]) -> rustix::io::Result<usize> {
     retry_on_intr(|| rustix::io::read(master, &mut *buf))
 }
 
-/// Nothing there and nobody there look the same from a line.
+/// For a line, no data and no program are the same.
 fn or_nothing(done: rustix::io::Result<usize>) -> io::Result<usize> {
     match done {
         Err(Errno::AGAIN) => Ok(0),

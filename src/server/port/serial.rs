@@ -42,7 +42,7 @@ impl Serial {
         stop_bits: u8,
     ) -> io::Result<Self> {
         let wanted = Tuning::new(baud, data_bits, parity, stop_bits)?;
-        // A plain file would open, and then fail in words that help nobody.
+        // A plain file would open, and then fail with an unhelpful message.
         if std::fs::metadata(path).is_ok_and(|found| !found.file_type().is_char_device()) {
             return Err(said(ErrorKind::InvalidInput, format!("{path} is not a serial port")));
         }

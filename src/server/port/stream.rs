@@ -38,7 +38,7 @@ impl<S: AsyncRead + AsyncWrite + Unpin + Send> Port for StreamPort<S> {
         while !self.unsent.is_empty() {
             match ready!(Pin::new(&mut self.stream).poll_write(cx, &self.unsent)) {
                 Ok(len) => drop(self.unsent.drain(..len)),
-                // A reply may have been held until nobody was there any more.
+                // A reply may have been held until the client had left.
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
                     return Poll::Ready(PortEvent::Ended(Ok(())));
                 }

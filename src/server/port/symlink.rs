@@ -55,11 +55,11 @@ impl PortSymlink {
 
 impl Drop for PortSymlink {
     fn drop(&mut self) {
-        // Somebody may have replaced it.
+        // Another process may have replaced it.
         let is_ours = std::fs::read_link(&self.at).is_ok_and(|target| target == self.target)
             && identity(&self.at) == self.identity;
         if is_ours {
-            // Nobody is left to tell, and a leftover link is replaced by the next run.
+            // The run is over, and a leftover link is replaced by the next one.
             let _ = std::fs::remove_file(&self.at);
         }
     }

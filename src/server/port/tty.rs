@@ -31,7 +31,7 @@ enum Tty {
 /// What was read from a terminal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Input {
-    /// Bytes; at least one, unless somebody has left or nothing was there.
+    /// Bytes; at least one, unless a program has left or there was nothing to read.
     pub len: usize,
     /// Have all programs left the other end?
     pub left: Left,
@@ -42,10 +42,10 @@ pub struct Input {
 pub enum Left {
     /// It has not.
     #[default]
-    Nobody,
+    None,
     /// Before these bytes, which are of the next program.
     Before,
-    /// Nobody is there now, and all that was sent has been read.
+    /// No program has it open now, and all that was sent has been read.
     After,
 }
 
@@ -58,7 +58,7 @@ impl Tty {
         match self {
             Self::Pty(pty) => pty.poll_read(cx, buf),
             Self::Serial(serial) => {
-                serial.poll_read(cx, buf).map_ok(|len| Input { len, left: Left::Nobody })
+                serial.poll_read(cx, buf).map_ok(|len| Input { len, left: Left::None })
             }
         }
     }
@@ -94,7 +94,7 @@ pub struct TtyPort {
     state: TtyState,
     /// Who is at the other end.
     client: ClientId,
-    /// That somebody is there was told.
+    /// The master at the port has been reported.
     is_told: bool,
     /// The other end has stopped reading.
     stalled: bool,
@@ -233,7 +233,7 @@ impl TtyPort {
         }
     }
 
-    /// Whoever was there is not any more; the next one is somebody else.
+    /// The present program has left; the next one is another master.
     fn next_client(&mut self) -> ClientId {
         let gone = self.client;
         self.client = ClientId(gone.0 + 1);
@@ -300,7 +300,7 @@ impl Port for TtyPort {
             }
             TtyState::Open(Tty::Pty(pty)) => {
                 // The port of a program that has it open stays as that has set it, which may be wrong from now on.
-                // Of a port that nobody has open, only what others see of it changes; bytes pass all the same.
+                // A port without a program changes only its visible settings; bytes pass nevertheless.
                 if !pty.is_open_elsewhere() {
                     let _ = pty.preset(settings.baud, settings.format.stop_bits);
                 }

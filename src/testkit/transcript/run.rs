@@ -150,9 +150,10 @@ impl TranscriptPlayer {
     }
 
     fn frame(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
-        match self.ascii() {
-            true => ascii::encode(unit, pdu).to_vec(),
-            false => rtu::encode(unit, pdu).to_vec(),
+        if self.ascii() {
+            ascii::encode(unit, pdu).to_vec()
+        } else {
+            rtu::encode(unit, pdu).to_vec()
         }
     }
 
@@ -175,9 +176,10 @@ fn ascii_unit(frame: &[u8]) -> Option<u8> {
 
 fn same(want: Vec<u8>, got: Vec<u8>) -> Result<(), String> {
     let text = |bytes: &[u8]| if bytes.is_empty() { "silence".into() } else { to_hex(bytes) };
-    match want == got {
-        true => Ok(()),
-        false => Err(format!("wrong answer\n  want {}\n  got  {}", text(&want), text(&got))),
+    if want == got {
+        Ok(())
+    } else {
+        Err(format!("wrong answer\n  want {}\n  got  {}", text(&want), text(&got)))
     }
 }
 
@@ -194,8 +196,9 @@ fn look(drive: View<'_>, check: &Check) -> Result<(), String> {
         return Err(format!("unknown signal, quantity or register `{name}`"));
     };
     let as_number = parse_integer(want).map(|number| number.to_string());
-    match got == *want || Some(&got) == as_number.as_ref() {
-        true => Ok(()),
-        false => Err(format!("{name} is {got}, not {want}")),
+    if got == *want || Some(&got) == as_number.as_ref() {
+        Ok(())
+    } else {
+        Err(format!("{name} is {got}, not {want}"))
     }
 }

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// A transcript as it is written.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Script {
-    /// The drives.
+    /// The `model` lines, in order.
     pub drives: Vec<DriveLine>,
     /// Speed and format, if it says.
     pub settings: Option<Settings>,
@@ -31,11 +31,11 @@ pub struct Script {
 pub struct DriveLine {
     /// Line in the transcript.
     pub line: usize,
-    /// Model.
+    /// Name of a built-in model, or a model file.
     pub model: String,
     /// Unit address.
     pub unit: Option<u8>,
-    /// Options.
+    /// Choices of model options, by name.
     pub options: BTreeMap<String, String>,
     /// Start values.
     pub set: BTreeMap<String, i64>,
@@ -163,7 +163,7 @@ impl Script {
             ("switches", [value]) => drive.switches = Some(number_of(value)?),
             ("terminal", [name]) => drive.terminals.push((*name).into()),
             ("position", [value]) => {
-                let position = parse_integer(value).and_then(|it| it.try_into().ok());
+                let position = parse_integer(value).and_then(|position| position.try_into().ok());
                 drive.machine.position = position.ok_or(format!("`{value}` is not a position"))?;
             }
             ("machine", _) => {

@@ -13,7 +13,7 @@ pub(super) use notices::Presence;
 /// What the opens and closes since the last look have come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Since {
-    /// Nobody has left, or somebody is still there.
+    /// No program has left, or one still has it open.
     Same,
     /// The last program has left.
     Left,
@@ -39,7 +39,7 @@ mod notices {
     }
 
     impl Presence {
-        /// Counts from now on, when nobody but us has opened `terminal`.
+        /// Counts from now on, while no other process has `terminal` open.
         pub(in super::super) fn watch(terminal: &Path) -> io::Result<Self> {
             let notices = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
             let wanted = WatchFlags::OPEN | WatchFlags::CLOSE;
@@ -49,7 +49,7 @@ mod notices {
             Ok(Self { notices: super::super::watch(notices)?, terminal, open: 0 })
         }
 
-        /// Had somebody it open at the last look?
+        /// Did a program have it open at the last poll?
         pub(in super::super) fn is_anybody_there(&self) -> bool {
             self.open > 0
         }
@@ -73,7 +73,7 @@ mod notices {
                 };
                 let ours = watched == self.terminal;
                 if what.contains(ReadFlags::QUEUE_OVERFLOW) {
-                    // Nobody can tell any more: as if all had left.
+                    // Not known any more: as if all had left.
                     (self.open, since) = (0, Since::Left);
                 } else if ours && what.contains(ReadFlags::OPEN) {
                     self.open += 1;

@@ -24,7 +24,7 @@ async fn input(pty: &mut Pty) -> (Vec<u8>, Left) {
 /// Bytes of a program that is still there.
 async fn heard(pty: &mut Pty) -> Vec<u8> {
     let (bytes, left) = input(pty).await;
-    assert_eq!(left, Left::Nobody);
+    assert_eq!(left, Left::None);
     bytes
 }
 
@@ -120,7 +120,7 @@ async fn the_last_of_several_counts() {
     }
 }
 
-/// Another program has come before anybody looked: what was read is its own.
+/// Another program has come before the next poll: what was read is its own.
 #[tokio::test]
 async fn the_next_program_may_be_there_already() {
     // A child that another test has just started may keep the first one's file open for a moment.
@@ -181,7 +181,7 @@ async fn all_that_was_sent_comes_before_the_end() {
 async fn the_next_program_may_come_while_much_is_unread() {
     let mut pty = Pty::open(None).unwrap();
     program(pty.path()).write_all(&[7; 400]).unwrap();
-    assert_eq!(input(&mut pty).await, (vec![7; 300], Left::Nobody));
+    assert_eq!(input(&mut pty).await, (vec![7; 300], Left::None));
     let mut second = program(pty.path());
     second.write_all(b"new").unwrap();
     let (mut got, mut before) = (Vec::new(), 0);
@@ -211,7 +211,7 @@ async fn a_lock_lives_as_long_as_its_holder() {
         // As by a kill: nothing is undone.
         drop(holder);
         is_deserted(&mut pty).await;
-        assert!(may_open(&pty), "nobody holds it any more");
+        assert!(may_open(&pty), "it is not locked any more");
         is_deserted(&mut pty).await;
     }
 }
@@ -225,7 +225,7 @@ async fn tells_what_is_waiting_now() {
     let mut program = program(pty.path());
     program.write_all(b"abc").unwrap();
     pty.master.readable().await.unwrap().retain_ready();
-    assert_eq!(pty.try_read(&mut buf).unwrap(), Input { len: 3, left: Left::Nobody });
+    assert_eq!(pty.try_read(&mut buf).unwrap(), Input { len: 3, left: Left::None });
     assert_eq!(pty.try_read(&mut buf).unwrap(), none);
     assert_eq!(poll_fn(|cx| pty.poll_read(cx, &mut [])).await.unwrap(), none);
     assert!(is_silent(&mut pty).await);

@@ -105,7 +105,7 @@ async fn a_client_that_stops_reading_is_given_up_and_holds_up_nobody() {
     let (mut listener, addr) = listener();
     let (mut lazy, lazy_id) = connect(&mut listener, addr).await;
     let (mut keen, keen_id) = connect(&mut listener, addr).await;
-    lazy.write_all(b"unheard").await.unwrap();
+    lazy.write_all(b"unread").await.unwrap();
     while listener.clients.contains_key(&lazy_id) {
         listener.send(lazy_id, &[7; 4096]);
         listener.send(keen_id, b"k");
@@ -215,7 +215,7 @@ async fn one_too_many_displaces_the_most_silent() {
         clients.push((late, late_id));
         assert_eq!(listener.clients.len(), MAX_CLIENTS);
     }
-    // Where there is room nobody gives way.
+    // Where there is room no client is disconnected.
     let (last, id) = clients.pop().unwrap();
     drop(last);
     assert_eq!(closed(&mut listener).await.0, id);
