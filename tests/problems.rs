@@ -110,7 +110,7 @@ fn each_expectation_has_its_bad_file() {
 }
 
 /// Where sentences for people who write files come from.
-const SPEAKERS: [&str; 12] = [
+const SPEAKERS: [&str; 13] = [
     "src/model/",
     "src/bench/",
     "src/scenario/compile.rs",
@@ -121,8 +121,9 @@ const SPEAKERS: [&str; 12] = [
     "src/medium/raw.rs",
     "src/medium/spec.rs",
     "src/serial.rs",
-    "src/problem/place/refuse.rs",
-    "src/problem/section.rs",
+    "src/problem/parse.rs",
+    "src/problem/decode.rs",
+    "src/problem/decode/reader.rs",
 ];
 
 /// Every rule has a bad file: each sentence in the source stands in some expectation.
@@ -143,7 +144,14 @@ fn each_sentence_has_a_file() {
     assert!(missing.is_empty(), "no file in tests/problems brings up\n{}", missing.join("\n"));
 }
 
+/// What no small file brings up (tests/bounds.rs does, with large ones), and what is said to nobody.
+const UNHEARD: [&str; 5] =
+    ["a file", "a map with ", "anything else", "recursion limit exceeded", "unknown anchor"];
+
 fn is_sentence(text: &str) -> bool {
+    if UNHEARD.iter().any(|it| text.starts_with(it)) {
+        return false;
+    }
     let words = text.split(' ').filter(|word| word.chars().any(char::is_lowercase));
     // A comment is for those who read what the program has written.
     words.count() >= 2 && !text.contains("BTreeMap<") && !text.starts_with("# ")

@@ -2,28 +2,32 @@
 
 use super::line_behaviour::{line_behaviour, strangers};
 use super::ports::{ports, refuse_taken};
-use super::raw::{RawBenchDrive, RawBenchLine, keys};
+use super::raw::{RawBench, RawBenchDrive, RawBenchLine};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, MachineProblem, Mismatch,
     OverrideKey, PortSpec, Saved, SpecProblem, machine,
 };
 use crate::bank::Kept;
 use crate::drive::{Drive, Setup};
-use crate::medium;
+use crate::medium::{self, FaultContext, LineBehaviour, NoRow, raw::RawFault};
 use crate::model::{Choices, Model};
-use crate::problem::{At, Path, Problem, Seg, bounds, section};
+use crate::problem::decode::{decode, listed};
+use crate::problem::tree::Node;
+use crate::problem::{
+    At, Path, Places, Problem, Seg, bounds, has_unread, is_unread, parse as parse_yaml, settle,
+};
 use crate::serial::Settings;
 use crate::time::Instant;
-use serde_yaml::Value;
+use crate::wire::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What a YAML file is, judged by its keys.
 pub fn kind_of(text: &str) -> &'static str {
-    let file = section::tree(text).map(|(file, _)| file).unwrap_or_default();
+    let Ok((file, _)) = parse_yaml(text) else { return "model" };
     let of_bench = ["lines", "seed"].iter().any(|key| file.get(key).is_some());
     // Of a model this is a map; somebody forgot the s.
-    let nearly = file.get("line").is_some_and(Value::is_sequence);
+    let nearly = file.get("line").is_some_and(Node::is_list);
     if file.get("steps").is_some() {
         return "scenario";
     }
@@ -48,22 +52,16 @@ pub fn parse_saved(
     library: &dyn Library,
     saved: &mut Saved,
 ) -> Result<Bench, Vec<Problem>> {
-    let (file, problems) = section::tree(text)?;
-    if !problems.is_empty() {
-        return Err(problems);
-    }
+    let (file, problems) = parse_yaml(text)?;
     let mut reader = BenchReader { library, saved, models: BTreeMap::new(), problems };
     let bench = reader.bench(&file);
-    match reader.problems.is_empty() {
-        true => Ok(bench),
-        false => Err(reader.problems),
+    let mut problems = reader.problems;
+    if problems.is_empty() {
+        return Ok(bench);
     }
-}
-
-/// Everything of the file but its lines, which are read one by one.
-#[derive(serde::Deserialize)]
-struct BenchHead {
-    seed: Option<u64>,
+    let mut places = Places::new(&file);
+    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
+    Err(problems)
 }
 
 struct BenchReader<'a> {
@@ -75,35 +73,21 @@ struct BenchReader<'a> {
 }
 
 impl BenchReader<'_> {
-    fn bench(&mut self, file: &Value) -> Bench {
-        let mut head = file.clone();
-        let lines = head.as_mapping_mut().and_then(|head| head.remove("lines"));
-        let head: Option<BenchHead> =
-            section::read(&head, &Path::root(), &keys(), &mut self.problems);
-        let seed = head.and_then(|head| head.seed);
-        let path = Path::root().key("lines");
-        let items = match &lines {
-            Some(Value::Sequence(items)) => items.as_slice(),
-            Some(_) => {
-                self.problems.push(Problem::value(path.clone(), "expected a list of lines"));
-                &[]
-            }
-            None => &[],
-        };
-        let most = bounds::count("lines", items.len(), bounds::LINES, &path);
-        let items = if most.is_none() { items } else { &[] };
-        self.problems.extend(most);
+    fn bench(&mut self, file: &Node) -> Bench {
+        let root = Path::root();
+        let head: Option<RawBench> = decode(file, &root, &["lines"], &mut self.problems);
+        let path = root.key("lines");
+        let mut nodes = listed(file.get("lines"), &path, &mut self.problems);
+        if nodes.is_empty() {
+            self.problems.push(Problem::key(path.clone(), "a bench needs at least one line"));
+        }
+        if let Some(most) = bounds::count("lines", nodes.len(), bounds::LINES, &path) {
+            self.problems.push(most);
+            nodes.clear();
+        }
         let mut lines: Vec<BenchLine> = Vec::new();
-        for (i, value) in items.iter().enumerate() {
-            let path = path.index(i);
-            if self.has_too_many(value, &path) {
-                continue;
-            }
-            let raw: Option<RawBenchLine> =
-                section::read(value, &path, &keys(), &mut self.problems);
-            let Some(line) = raw.and_then(|raw| self.line(i, &raw, &path, &lines)) else {
-                continue;
-            };
+        for (i, (path, node)) in nodes.into_iter().enumerate() {
+            let Some(line) = self.line(i, node, &path, &lines) else { continue };
             if lines.iter().any(|it| it.name == line.name) {
                 let what = format!("duplicate line name `{}`", line.name);
                 let advice = "give each line its own `name`";
@@ -111,50 +95,99 @@ impl BenchReader<'_> {
             }
             lines.push(line);
         }
-        if items.is_empty() && self.problems.is_empty() {
-            self.problems.push(Problem::key(path, "a bench needs at least one line"));
-        }
-        Bench { seed, lines }
+        Bench { seed: head.and_then(|head| head.seed), lines }
     }
 
-    /// Has a line more drives or rules than may be?
-    fn has_too_many(&mut self, line: &Value, path: &Path) -> bool {
-        let before = self.problems.len();
-        for (key, most) in [("drives", bounds::DRIVES), ("faults", bounds::FAULTS)] {
-            let len = line.get(key).and_then(Value::as_sequence).map_or(0, Vec::len);
-            self.problems.extend(bounds::count(key, len, most, &path.key(key)));
-        }
-        self.problems.len() > before
+    /// The items of a list of a line, unless there are more than may be.
+    fn items<'a>(
+        &mut self,
+        line: &'a Node,
+        key: &str,
+        most: usize,
+        path: &Path,
+    ) -> Option<Vec<(Path, &'a Node)>> {
+        let path = path.key(key);
+        let items = listed(line.get(key), &path, &mut self.problems);
+        let many = bounds::count(key, items.len(), most, &path);
+        let few = many.is_none();
+        self.problems.extend(many);
+        few.then_some(items)
     }
 
+    /// Reads a line. What is wrong with one part of it keeps no other from being looked at.
     fn line(
         &mut self,
         index: usize,
-        raw: &RawBenchLine,
+        node: &Node,
         path: &Path,
         above: &[BenchLine],
     ) -> Option<BenchLine> {
+        let later = ["drives", "faults"];
+        let raw: RawBenchLine = decode(node, path, &later, &mut self.problems)?;
+        let drives = self.items(node, "drives", bounds::DRIVES, path)?;
+        let faults = self.items(node, "faults", bounds::FAULTS, path)?;
+        if drives.is_empty() {
+            let what = "a line needs at least one drive";
+            self.problems.push(Problem::key(path.key("drives"), what));
+        }
         let name = raw.name.clone().unwrap_or_else(|| format!("line-{}", index + 1));
-        let ports = ports(raw, path, &mut self.problems);
-        let mut devices = Vec::new();
-        for (i, drive) in raw.drives.iter().enumerate() {
-            devices.push(self.device(drive, &path.key("drives").index(i)));
-        }
-        if devices.is_empty() {
-            self.problems.push(Problem::key(path.key("drives"), "a line needs at least one drive"));
-        }
-        let mut devices: Vec<Device> = devices.into_iter().collect::<Option<_>>()?;
-        for (i, device) in devices.iter_mut().enumerate() {
-            self.saved.give(&name, i, device);
-        }
-        if ports.is_empty() {
-            return None;
-        }
+        let ports = ports(&raw, path, &mut self.problems);
         refuse_taken(&ports, above, &mut self.problems);
-        let ports = ports.into_iter().map(|(port, _)| port).collect();
-        let line = self.wired(name, ports, raw, devices, path)?;
-        self.addresses(&line, path);
+        let ports: Vec<PortSpec> = ports.into_iter().map(|(port, _)| port).collect();
+        let mut devices: Vec<Option<Device>> = Vec::new();
+        for (path, node) in &drives {
+            let drive: Option<RawBenchDrive> = decode(node, path, &[], &mut self.problems);
+            devices.push(drive.and_then(|drive| self.device(&drive, path)));
+        }
+        let first_is_known = devices.first().is_some_and(Option::is_some);
+        let is_whole = !ports.is_empty() && devices.iter().all(Option::is_some);
+        let known =
+            |(i, device): (usize, Option<Device>)| Some((path.key("drives").index(i), device?));
+        let known = devices.into_iter().enumerate().filter_map(known);
+        let (paths, mut devices): (Vec<Path>, Vec<Device>) = known.unzip();
+        if is_whole {
+            for (i, device) in devices.iter_mut().enumerate() {
+                self.saved.give(&name, i, device);
+            }
+        }
+        let settings = self.settings(&raw, path);
+        let line_behaviour = line_behaviour(&raw, path, &mut self.problems);
+        strangers(&line_behaviour, &devices, path, &mut self.problems);
+        let builder = LineBuilder::new(name, devices)
+            // A line without a port is looked at like one on a pseudo-terminal.
+            .ports(if ports.is_empty() { vec![PortSpec::Pty(None)] } else { ports })
+            .settings(settings.unwrap_or_default())
+            .ascii(raw.ascii)
+            .strict(raw.strict)
+            .match_baud(raw.match_baud)
+            .behaviour(line_behaviour);
+        let (mut line, mismatches) = builder.build();
+        // How the line is set is known by what it says, or by its first drive.
+        if settings.is_ok_and(|it| it.is_some() || first_is_known) {
+            for Mismatch { device, what } in mismatches {
+                let advice = "choose `settings` that all drives on the line support";
+                let problem = Problem::value(paths[device].key("model"), what);
+                self.problems.push(problem.advise(advice));
+            }
+        }
+        for (path, node) in &faults {
+            let taken = line.rule_names();
+            let raw: Option<RawFault> = decode(node, path, &[], &mut self.problems);
+            let Some(raw) = raw else { continue };
+            let known = KnownPart { line: &line, is_whole };
+            let fault_set = medium::compile(&raw, node, path, &known, &taken, &mut self.problems);
+            line.put(fault_set);
+        }
+        self.addresses(&line, &paths);
         Some(line)
+    }
+
+    /// The speed and the format that the line is told, if any.
+    fn settings(&mut self, raw: &RawBenchLine, path: &Path) -> Result<Option<Settings>, ()> {
+        let path = path.key("settings");
+        let read = raw.settings.as_deref().map(str::parse::<Settings>).transpose();
+        let read = read.map_err(|what| self.problems.push(Problem::value(path.clone(), what)));
+        read.and_then(|it| if is_unread(&self.problems, &path) { Err(()) } else { Ok(it) })
     }
 
     fn device(&mut self, raw: &RawBenchDrive, path: &Path) -> Option<Device> {
@@ -162,14 +195,17 @@ impl BenchReader<'_> {
         let machine = machine(&raw.machine, &model.wiring).map_err(|problems| {
             let path = path.key("machine");
             let problem = |it: MachineProblem| Problem::value(path.key(it.key), it.what);
-            self.problems.extend(problems.into_iter().map(problem));
+            let told: Vec<_> = problems.into_iter().map(problem).collect();
+            let told = told.into_iter().filter(|it| !has_unread(&self.problems, &it.path));
+            let mut told: Vec<_> = told.collect();
+            self.problems.append(&mut told);
         });
         let spec = DeviceSpec {
             unit: raw.unit,
             set: raw.set.clone(),
             switches: raw.switches,
             terminals: raw.terminals.clone(),
-            machine: machine.ok()?,
+            machine: machine.unwrap_or_default(),
             start: raw.machine.start.into(),
             position: raw.machine.position.into(),
         };
@@ -221,55 +257,15 @@ impl BenchReader<'_> {
         }
     }
 
-    /// Settles speed, format and framing of the line, and sets every drive on it to them.
-    fn wired(
-        &mut self,
-        name: String,
-        ports: Vec<PortSpec>,
-        raw: &RawBenchLine,
-        devices: Vec<Device>,
-        path: &Path,
-    ) -> Option<BenchLine> {
-        let settings = match raw.settings.as_deref().map(str::parse::<Settings>).transpose() {
-            Ok(settings) => settings,
-            Err(what) => {
-                self.problems.push(Problem::value(path.key("settings"), what));
-                return None;
-            }
-        };
-        let line_behaviour = line_behaviour(raw, path, &mut self.problems);
-        strangers(&line_behaviour, &devices, path, &mut self.problems);
-        let builder = LineBuilder::new(name, devices)
-            .ports(ports)
-            .settings(settings)
-            .ascii(raw.ascii)
-            .strict(raw.strict)
-            .match_baud(raw.match_baud)
-            .behaviour(line_behaviour);
-        let (mut line, mismatches) = builder.build();
-        for Mismatch { device, what } in mismatches {
-            let path = path.key("drives").index(device).key("model");
-            let advice = "choose `settings` that all drives on the line support";
-            self.problems.push(Problem::value(path, what).advise(advice));
-        }
-        self.faults(raw, &mut line, path);
-        Some(line)
-    }
-
-    fn faults(&mut self, raw: &RawBenchLine, line: &mut BenchLine, path: &Path) {
-        for (i, raw) in raw.faults.iter().enumerate() {
-            let path = path.key("faults").index(i);
-            let taken = line.rule_names();
-            let fault_set = medium::compile(raw, &path, line, &taken, &mut self.problems);
-            line.put(fault_set);
-        }
-    }
-
     /// No two stations of a line may answer to one address. What masters have saved since may clash: real
     /// drives do.
-    fn addresses(&mut self, line: &BenchLine, path: &Path) {
+    fn addresses(&mut self, line: &BenchLine, paths: &[Path]) {
         let mut taken: BTreeMap<u8, usize> = BTreeMap::new();
-        for (i, device) in line.devices.iter().enumerate() {
+        for (i, (device, path)) in line.devices.iter().zip(paths).enumerate() {
+            let path = path.key("unit");
+            if is_unread(&self.problems, &path) {
+                continue;
+            }
             for setup in &device.setups {
                 let new = Setup { kept: Kept::default(), ..setup.clone() };
                 let unit = Drive::new(device.model.clone(), &new, Instant::ZERO).unit();
@@ -279,10 +275,33 @@ impl BenchReader<'_> {
                 };
                 let what =
                     format!("unit {unit} is already used by drive {} on this line", other + 1);
-                let path = path.key("drives").index(i).key("unit");
-                self.problems
-                    .push(Problem::value(path, what).advise("give each drive its own `unit`"));
+                let problem = Problem::value(path.clone(), what);
+                self.problems.push(problem.advise("give each drive its own `unit`"));
             }
+        }
+    }
+}
+
+/// A line as far as it could be read.
+struct KnownPart<'a> {
+    line: &'a BenchLine,
+    is_whole: bool,
+}
+
+impl FaultContext for KnownPart<'_> {
+    fn is_tcp(&self) -> bool {
+        self.line.is_tcp()
+    }
+
+    fn line_behaviour(&self) -> &LineBehaviour {
+        self.line.line_behaviour()
+    }
+
+    fn spans(&self, name: &str) -> Result<Vec<Span>, NoRow> {
+        match self.line.spans(name) {
+            // It may be a register of a drive that is not known.
+            Err(_) if !self.is_whole => Ok(Vec::new()),
+            found => found,
         }
     }
 }
@@ -290,7 +309,8 @@ impl BenchReader<'_> {
 /// What the options of the drive at `path` make of its model, which is fine without them.
 fn of_options(problem: Problem, file: &str, path: &Path) -> Problem {
     if problem.path.segs().first() == Some(&Seg::Key("options".into())) {
-        return Problem { path: path.join(&problem.path), ..problem };
+        // Its place is one in the model file.
+        return Problem { path: path.join(&problem.path), mark: None, ..problem };
     }
     let what = format!("with these options {file} is invalid: {problem}");
     Problem::key(path.key("options"), what).advise(format!("see `drivemu check {file}`"))
@@ -304,5 +324,5 @@ fn at_override_key(problem: SpecProblem, path: &Path) -> Problem {
         OverrideKey::Switches => (path.key("switches"), At::Value),
         OverrideKey::Terminal(i) => (path.key("terminals").index(*i), At::Value),
     };
-    Problem { path, at, what: problem.what, advice: problem.advice, mark: None }
+    Problem { at, ..Problem::value(path, problem.what).advise_if(problem.advice) }
 }

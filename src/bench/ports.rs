@@ -2,7 +2,7 @@
 
 use super::raw::{RawBenchLine, RawPacing, RawPort};
 use super::{BenchLine, PortSpec};
-use crate::problem::{Path, Problem, bounds};
+use crate::problem::{Path, Problem, bounds, has_unread, is_unread};
 
 /// What a port is, and where the file says so.
 pub(super) type PlacedPort = (PortSpec, Path);
@@ -18,7 +18,10 @@ pub(super) fn ports(
     problems: &mut Vec<Problem>,
 ) -> Vec<PlacedPort> {
     let own = placed(&raw.port(), path);
+    let unread = |key: &&str| is_unread(problems, &path.key(key));
+    let is_told = ["pty", "serial", "tcp", "rtu_over_tcp", "ports"].iter().any(unread);
     let ports = match (&raw.ports, own.as_slice()) {
+        (None, []) if is_told => Vec::new(),
         (None, []) => {
             let problem = Problem::value(path.clone(), "this line has no port");
             problems.push(problem.advise(format!("add one of {KINDS}, or `ports`")));
@@ -72,6 +75,7 @@ fn listed(list: &[RawPort], path: &Path, problems: &mut Vec<Problem>) -> Vec<Pla
         let path = path.index(i);
         let mut given = placed(raw, &path).into_iter();
         match (given.next(), given.next()) {
+            (None, _) if has_unread(problems, &path) => {}
             (None, _) => {
                 problems.push(Problem::value(path, format!("a port needs one of {KINDS}")));
             }

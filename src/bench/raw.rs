@@ -1,9 +1,8 @@
 //! A bench file as it is written: the reference of the format.
 
-use crate::medium;
 use crate::medium::raw::RawFault;
 use serde::{Deserialize, Deserializer};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
@@ -141,9 +140,10 @@ pub struct RawBenchDrive {
 /// An address is a number to YAML, a name is a text: both are keys here.
 fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i64>, D::Error> {
     #[derive(Deserialize, PartialEq, Eq, PartialOrd, Ord)]
-    #[serde(untagged, expecting = "expected the name or the address of a register")]
     enum BenchKey {
+        #[serde(rename = "a number (an address)")]
         Address(u16),
+        #[serde(rename = "a string (a name)")]
         Name(String),
     }
     let values = BTreeMap::<BenchKey, i64>::deserialize(from)?.into_iter();
@@ -190,49 +190,4 @@ pub struct RawIndex {
 #[cfg(feature = "cli")]
 pub fn schema() -> serde_json::Value {
     schemars::schema_for!(RawBench).to_value()
-}
-
-/// The keys of the format that are not those of a fault rule alone.
-const OWN_KEYS: &[&str] = &[
-    "ascii",
-    "chatter",
-    "chunk",
-    "drives",
-    "echo",
-    "every",
-    "faults",
-    "hard_stop",
-    "home",
-    "index",
-    "lines",
-    "machine",
-    "match_baud",
-    "model",
-    "name",
-    "negative_limit",
-    "offset",
-    "options",
-    "pacing",
-    "ports",
-    "position",
-    "positive_limit",
-    "pty",
-    "rtu_over_tcp",
-    "seed",
-    "serial",
-    "set",
-    "settings",
-    "start",
-    "strict",
-    "switches",
-    "tcp",
-    "terminals",
-    "unit",
-    "units",
-];
-
-/// Every key of the format, in order, for advice on unknown ones.
-pub fn keys() -> Vec<&'static str> {
-    let keys: BTreeSet<_> = OWN_KEYS.iter().copied().chain(medium::raw::keys()).collect();
-    keys.into_iter().collect()
 }

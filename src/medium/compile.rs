@@ -3,9 +3,10 @@
 //! A rule that could do nothing is refused: an inert rule makes a test pass that tests nothing.
 
 use super::keys::{self, FaultKeys, KeyRefusal};
-use super::raw::{self, RawAct, RawFault, RawFaultRegister, RawFunctions};
+use super::raw::{COMMON_KEYS, RawAct, RawFault, RawFaultRegister, RawFunctions};
 use super::{FaultEffect, FaultKind, FaultRule, LineBehaviour, When, spec};
-use crate::problem::{Path, Problem, suggest};
+use crate::problem::tree::Node;
+use crate::problem::{Path, Problem, is_unread, suggest};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
 use crate::units::parse_integer;
@@ -49,15 +50,23 @@ pub struct FaultSet {
 /// rules. What is wrong goes to `problems`; then what comes back is not to be used.
 pub fn compile(
     raw: &RawFault,
+    node: &Node,
     path: &Path,
     site: &dyn FaultContext,
     taken: &[&str],
     problems: &mut Vec<Problem>,
 ) -> FaultSet {
-    let mut reader = FaultReader { raw, path, site, problems };
-    reader.refuse_idle_keys();
+    let is_known = !is_unread(problems, &path.key("do"));
+    let mut reader = FaultReader { raw, node, path, site, problems };
+    match is_known {
+        true => reader.refuse_idle_keys(),
+        false => reader.refuse_keys_of_no_kind(),
+    }
     let name = reader.name(taken);
     let when = reader.when();
+    if !is_known {
+        return FaultSet::default();
+    }
     let preset = match raw.act {
         RawAct::Preset(preset) => preset,
         RawAct::Kind(kind) => {
@@ -80,6 +89,8 @@ pub fn compile(
 
 struct FaultReader<'a> {
     raw: &'a RawFault,
+    /// The rule in the tree, for the keys that its kind has of its own.
+    node: &'a Node,
     path: &'a Path,
     site: &'a dyn FaultContext,
     problems: &'a mut Vec<Problem>,
@@ -100,11 +111,7 @@ impl FaultReader<'_> {
             let with: Vec<_> = FaultKind::ALL.iter().filter(has).map(|kind| kind.name).collect();
             let path = self.path.key(key);
             let problem = match with.is_empty() {
-                true => {
-                    let known = raw::keys();
-                    let advice = suggest::did_you_mean(key, known);
-                    Problem::key(path, "unknown key").advise_if(advice)
-                }
+                true => unknown_key(key, path),
                 false => {
                     let what = format!("`{key}` does not apply to `{}`", kind.name());
                     Problem::key(path, what).advise(format!("it applies to {}", with.join(", ")))
@@ -131,6 +138,23 @@ impl FaultReader<'_> {
         if raw.unit == Some(BROADCAST) && !kind.takes_broadcasts() {
             let what = format!("a broadcast has no reply, so `{}` has no effect", kind.name());
             self.refuse("unit", what, None);
+        }
+    }
+
+    /// Keys that no kind has, or that none could read, where the kind is not known.
+    fn refuse_keys_of_no_kind(&mut self) {
+        for key in self.raw.own.0.keys() {
+            let (path, Some(node)) = (self.path.key(key), self.node.get(key)) else { continue };
+            let mut refused = vec![vec![unknown_key(key, path.clone())]];
+            let kinds = FaultKind::ALL.iter().filter_map(|kind| kind.key(key));
+            refused.extend(kinds.map(|key| {
+                let mut problems = Vec::new();
+                FaultKeys::of(None).put(key, node, &path, &mut problems);
+                problems
+            }));
+            if refused[1..].iter().all(|problems| !problems.is_empty()) {
+                self.problems.extend(refused.pop().unwrap_or_default());
+            }
         }
     }
 
@@ -272,8 +296,8 @@ impl FaultReader<'_> {
     fn effect(&mut self, kind: &FaultKind) -> Option<FaultEffect> {
         let mut keys = FaultKeys::of(self.raw.unit);
         for key in kind.keys {
-            match self.raw.own.0.get(key.name) {
-                Some(value) => keys.put(key, value, &self.path.key(key.name), self.problems),
+            match self.node.get(key.name) {
+                Some(node) => keys.put(key, node, &self.path.key(key.name), self.problems),
                 None if key.is_required => {
                     let what = format!("`{}` needs `{}`", kind.name, key.name);
                     self.refuse("do", what, None);
@@ -299,4 +323,10 @@ impl FaultReader<'_> {
     ) -> Option<T> {
         keys::within(key, value?, range, &self.path.key(key), self.problems)
     }
+}
+
+fn unknown_key(key: &str, path: Path) -> Problem {
+    let own = FaultKind::ALL.iter().flat_map(|kind| kind.keys).map(|key| key.name);
+    let advice = suggest::did_you_mean(key, COMMON_KEYS.iter().copied().chain(own));
+    Problem::key(path, "unknown key").advise_if(advice)
 }

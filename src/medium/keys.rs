@@ -1,7 +1,8 @@
 //! Keys that a kind of fault has of its own: what each accepts, and how it is read.
 
-use crate::problem::{Path, Problem, section};
-use serde_yaml::Value;
+use crate::problem::decode::decode;
+use crate::problem::tree::Node;
+use crate::problem::{Path, Problem};
 use std::ops::RangeInclusive;
 
 /// A key of a kind of fault.
@@ -44,16 +45,16 @@ impl FaultKey {
         Self { is_required: true, ..self }
     }
 
-    /// Reads `value` at `path`: one number, as a range of one, or a range.
-    fn read(&self, value: &Value, path: &Path, problems: &mut Vec<Problem>) -> Option<[u64; 2]> {
+    /// Reads `node` at `path`: one number, as a range of one, or a range.
+    fn read(&self, node: &Node, path: &Path, problems: &mut Vec<Problem>) -> Option<[u64; 2]> {
         match self.form {
             KeyForm::Number(least, most) => {
-                let number = section::read(value, path, &[], problems)?;
+                let number = decode(node, path, &[], problems)?;
                 within(self.name, number, least..=most, path, problems).map(|it| [it, it])
             }
             KeyForm::Milliseconds => {
-                let range = milliseconds(value);
-                let what = match (range, value.is_u64() || value.is_string()) {
+                let range = milliseconds(node);
+                let what = match (range, node.as_u64().is_some() || node.as_text().is_some()) {
                     (Some([least, most]), _) if least <= most && most > 0 => return range,
                     (_, true) => "`ms` must be above 0, or a range such as 50-200",
                     (_, false) => "expected milliseconds, or a range such as 50-200",
@@ -65,12 +66,12 @@ impl FaultKey {
     }
 }
 
-fn milliseconds(value: &Value) -> Option<[u64; 2]> {
+fn milliseconds(node: &Node) -> Option<[u64; 2]> {
     let number = |text: &str| text.trim().parse::<u32>().ok().map(u64::from);
-    if let Some(fixed) = value.as_u64() {
+    if let Some(fixed) = node.as_u64() {
         return (fixed <= u32::MAX.into()).then_some([fixed, fixed]);
     }
-    let (least, most) = value.as_str()?.split_once('-')?;
+    let (least, most) = node.as_text()?.split_once('-')?;
     Some([number(least)?, number(most)?])
 }
 
@@ -128,15 +129,15 @@ impl FaultKeys {
         Self { unit, ranges: Vec::new() }
     }
 
-    /// Reads `value` at `path` as `key`.
+    /// Reads `node` at `path` as `key`.
     pub fn put(
         &mut self,
         key: &'static FaultKey,
-        value: &Value,
+        node: &Node,
         path: &Path,
         problems: &mut Vec<Problem>,
     ) {
-        let range = key.read(value, path, problems);
+        let range = key.read(node, path, problems);
         self.ranges.extend(range.map(|range| (key.name, range)));
     }
 

@@ -1,10 +1,9 @@
 //! A fault rule as it is written: the reference of the format, in bench files and on the command line.
 
 use super::{FaultKind, LineBehaviour, Preset};
-use serde::de::Error as _;
+use serde::de::{EnumAccess, Error, IgnoredAny, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use serde_yaml::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 #[cfg(feature = "cli")]
@@ -56,38 +55,37 @@ pub enum RawAct {
     Preset(&'static Preset),
 }
 
-/// The keys that a kind has of its own, as they are written.
+/// The keys that a kind has of its own. What they say is read out of the tree, as their kind wants it.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(transparent)]
-pub struct OwnKeys(pub BTreeMap<String, Value>);
+pub struct OwnKeys(pub BTreeMap<String, IgnoredAny>);
 
 /// One function code, or several.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "expected a function code from 1 to 127, or a list of them")]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawFunctions {
     /// One.
+    #[serde(rename = "a number from 1 to 127")]
     One(u8),
     /// Several.
+    #[serde(rename = "a list of numbers")]
     Many(Vec<u8>),
 }
 
 /// Registers.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(
-    untagged,
-    expecting = "expected an address, a range such as 0x20-0x25, or the name of a register"
-)]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawFaultRegister {
     /// One address.
+    #[serde(rename = "a number (an address)")]
     Address(u16),
     /// A span, or the name of a row.
+    #[serde(rename = "a string (a span such as 0x20-0x25, or a name)")]
     Name(String),
 }
 
 /// The keys that a rule of any kind has.
-const COMMON_KEYS: &[&str] = &[
+pub(super) const COMMON_KEYS: &[&str] = &[
     "count",
     "do",
     "every",
@@ -100,13 +98,6 @@ const COMMON_KEYS: &[&str] = &[
     "unit",
     "until",
 ];
-
-/// Every key of a rule, in order, for advice on unknown ones.
-pub fn keys() -> Vec<&'static str> {
-    let own = FaultKind::ALL.iter().flat_map(|kind| kind.keys).map(|key| key.name);
-    let keys: BTreeSet<_> = COMMON_KEYS.iter().copied().chain(own).collect();
-    keys.into_iter().collect()
-}
 
 /// What a rule can do, by name.
 static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| {
@@ -158,10 +149,26 @@ impl PartialEq for RawAct {
 
 impl<'de> Deserialize<'de> for RawAct {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(from)?;
-        let kind = FaultKind::find(&name).map(Self::Kind);
-        let act = kind.or_else(|| Preset::find(&name).map(Self::Preset));
-        act.ok_or_else(|| D::Error::unknown_variant(&name, &NAMES))
+        from.deserialize_enum("RawAct", &NAMES, ActVisitor)
+    }
+}
+
+/// Takes one of [`NAMES`].
+struct ActVisitor;
+
+impl<'de> Visitor<'de> for ActVisitor {
+    type Value = RawAct;
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("kind")
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<RawAct, A::Error> {
+        let (name, variant) = access.variant::<String>()?;
+        variant.unit_variant()?;
+        let kind = FaultKind::find(&name).map(RawAct::Kind);
+        let act = kind.or_else(|| Preset::find(&name).map(RawAct::Preset));
+        act.ok_or_else(|| A::Error::unknown_variant(&name, &NAMES))
     }
 }
 

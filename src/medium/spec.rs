@@ -3,12 +3,11 @@
 //! A value is written as in YAML, so a list takes brackets: `lose_reply:function=[0x06,0x10]`. What is said
 //! here becomes the same tree as a map in a bench file and is checked by the same code.
 
-use super::raw::{self, RawFault};
+use super::raw::RawFault;
 use super::{FaultContext, FaultSet, compile};
-use crate::problem::{At, Mark, Path, Problem, Seg, section};
-use serde_yaml::{Mapping, Value};
-use std::collections::BTreeMap;
-use std::ops::Range;
+use crate::problem::decode::decode;
+use crate::problem::tree::{Content, MapEntry, Node};
+use crate::problem::{Mark, Path, Places, Problem, parse as parse_yaml, settle};
 
 /// Reads the compact form of one rule or preset for `site`, where rules called `taken` stand already.
 ///
@@ -20,61 +19,77 @@ pub fn parse(
     taken: &[&str],
 ) -> Result<FaultSet, Vec<Problem>> {
     let mut problems = Vec::new();
-    let cut = Cut::new(spec, &mut problems);
+    let tree = cut(spec, &mut problems);
     let path = Path::root();
-    let raw: Option<RawFault> =
-        section::read(&Value::Mapping(cut.tree), &path, &raw::keys(), &mut problems);
-    let rules = raw.map(|raw| compile(&raw, &path, site, taken, &mut problems));
-    match problems.is_empty() {
-        true => Ok(rules.unwrap_or_default()),
-        false => {
-            let placed = problems.into_iter().map(|it| place(it, spec, &cut.places));
-            Err(placed.collect())
-        }
+    let raw: Option<RawFault> = decode(&tree, &path, &[], &mut problems);
+    let rules = raw.map(|raw| compile(&raw, &tree, &path, site, taken, &mut problems));
+    if problems.is_empty() {
+        return Ok(rules.unwrap_or_default());
     }
+    let mut places = Places::new(&tree);
+    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
+    Err(problems)
 }
 
-/// A spec cut at its colons and commas.
-struct Cut {
-    tree: Mapping,
-    /// Where each key and its value stand, in bytes.
-    places: BTreeMap<String, [Range<usize>; 2]>,
+/// The map that a spec stands for, cut at its colons and commas. What has no place of its own is marked at the kind.
+fn cut(spec: &str, problems: &mut Vec<Problem>) -> Node {
+    let (kind, rest) = spec.split_once(':').unwrap_or((spec, ""));
+    let mark = mark_of(spec, kind.trim());
+    let text = |text: &str, mark| Node { content: Content::Text(text.to_owned()), mark };
+    let entry = |key: &str, of_key, value| MapEntry {
+        key: text(key, of_key),
+        written: key.to_owned(),
+        value,
+    };
+    let mut entries = vec![entry("do", mark, text(kind.trim(), mark))];
+    for item in items(rest) {
+        let Some((key, value)) = item.split_once('=') else {
+            let what = format!("`{}` has no value", item.trim());
+            let problem = Problem::value(Path::root(), what).advise("write KEY=VALUE");
+            problems.push(problem.marked(mark_of(spec, item)));
+            continue;
+        };
+        let (key, value) = (key.trim(), value.trim());
+        let of_key = mark_of(spec, key);
+        if entries.iter().any(|it| it.written == key) {
+            let problem = Problem::key(Path::root().key(key), "duplicate key");
+            problems.push(problem.marked(of_key));
+            continue;
+        }
+        let of_value = mark_of(spec, value);
+        let read = parse_yaml(value).ok().filter(|(node, _)| node.content != Content::Null);
+        let read = read.map(|(node, more)| {
+            problems.extend(more.into_iter().map(|it| of_key_in(it, key).marked(of_value)));
+            shifted(node, of_value.column - 1)
+        });
+        entries.push(entry(key, of_key, read.unwrap_or_else(|| text(value, of_value))));
+    }
+    Node { content: Content::Map(entries), mark }
 }
 
-impl Cut {
-    fn new(spec: &str, problems: &mut Vec<Problem>) -> Self {
-        let (kind, rest) = spec.split_once(':').unwrap_or((spec, ""));
-        let mut cut = Self { tree: Mapping::new(), places: BTreeMap::new() };
-        cut.put("do", kind, spec, Value::String(kind.trim().into()));
-        for item in items(rest) {
-            let Some((key, value)) = item.split_once('=') else {
-                let mark = Some(mark(spec, &place_of(spec, item)));
-                let what = format!("`{}` has no value", item.trim());
-                let problem = Problem::value(Path::root(), what).advise("write KEY=VALUE");
-                problems.push(Problem { mark, ..problem });
-                continue;
+/// What is wrong with a value, told of its key.
+fn of_key_in(problem: Problem, key: &str) -> Problem {
+    Problem { path: Path::root().key(key).join(&problem.path), ..problem }
+}
+
+/// The same value, so many columns to the right.
+fn shifted(mut node: Node, columns: usize) -> Node {
+    node.mark = Mark { column: node.mark.column + columns, ..node.mark };
+    node.content = match node.content {
+        Content::List(items) => {
+            Content::List(items.into_iter().map(|it| shifted(it, columns)).collect())
+        }
+        Content::Map(entries) => {
+            let entry = |it: MapEntry| MapEntry {
+                key: shifted(it.key, columns),
+                value: shifted(it.value, columns),
+                ..it
             };
-            let key = key.trim();
-            if cut.places.contains_key(key) {
-                let mark = Some(mark(spec, &place_of(spec, key)));
-                let problem = Problem::key(Path::root().key(key), "duplicate key");
-                problems.push(Problem { mark, ..problem });
-                continue;
-            }
-            let as_yaml = serde_yaml::from_str(value).ok().filter(|it: &Value| !it.is_null());
-            let read = as_yaml.unwrap_or_else(|| Value::String(value.trim().into()));
-            cut.put(key, value, spec, read);
+            Content::Map(entries.into_iter().map(entry).collect())
         }
-        cut
-    }
-
-    fn put(&mut self, key: &str, value: &str, spec: &str, read: Value) {
-        // The kind stands without its key.
-        let of_key = if key == "do" { value } else { key };
-        let places = [of_key, value.trim()].map(|part| place_of(spec, part));
-        self.places.insert(key.to_owned(), places);
-        self.tree.insert(Value::String(key.to_owned()), read);
-    }
+        other => other,
+    };
+    node
 }
 
 /// What stands between commas; those in brackets are part of a list.
@@ -88,28 +103,8 @@ fn items(rest: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Where `part`, a slice of `spec`, stands in it.
-fn place_of(spec: &str, part: &str) -> Range<usize> {
+fn mark_of(spec: &str, part: &str) -> Mark {
     let start = (part.as_ptr() as usize).saturating_sub(spec.as_ptr() as usize).min(spec.len());
-    start..(start + part.len()).min(spec.len())
-}
-
-fn place(problem: Problem, spec: &str, places: &BTreeMap<String, [Range<usize>; 2]>) -> Problem {
-    if problem.mark.is_some() {
-        return problem;
-    }
-    let key = problem.path.segs().iter().find_map(|seg| match seg {
-        Seg::Key(key) => Some(key.as_str()),
-        Seg::Index(_) => None,
-    });
-    // A key that is missing: the kind asks for it.
-    let found = key.and_then(|key| places.get(key)).or_else(|| places.get("do"));
-    let place = found.map(|[key, value]| if problem.at == At::Key { key } else { value });
-    let mark = place.map(|place| mark(spec, place));
-    Problem { mark, ..problem }
-}
-
-fn mark(spec: &str, place: &Range<usize>) -> Mark {
-    let count = |part: &str| part.chars().count();
-    let length = count(&spec[place.clone()]).max(1);
-    Mark { line: 1, column: count(&spec[..place.start]) + 1, length }
+    let column = spec.get(..start).map_or(0, |before| before.chars().count()) + 1;
+    Mark { line: 1, column, length: part.chars().count().max(1) }
 }

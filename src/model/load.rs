@@ -1,10 +1,11 @@
 //! From the text of a model file to a [`Model`], or to everything that is wrong with it.
 
-use super::options::{OptionInfo, choose, lay_over};
-use super::raw::{KEYS, RawOption};
+use super::options::{self, OptionInfo, choose};
+use super::raw::RawOption;
 use super::{Model, compile};
-use crate::problem::{Path, Problem, section};
-use serde_yaml::Value;
+use crate::problem::decode::{decode, named};
+use crate::problem::tree::Node;
+use crate::problem::{Path, Places, Problem, bounds, parse, settle};
 use std::collections::BTreeMap;
 
 /// Options chosen by name.
@@ -15,54 +16,86 @@ pub type Choices = BTreeMap<String, String>;
 /// # Errors
 /// Every problem of the file with the chosen options laid over it, and settings for options that it does not have.
 pub fn load(text: &str, choices: &Choices) -> Result<Model, Vec<Problem>> {
-    let (file, mut problems) = section::tree(text)?;
-    let options = read_options(&file, &mut problems);
-    let chosen = choose(&options, choices, &mut problems);
-    let layered = |chosen: &Choices| {
-        let mut layered = file.clone();
-        for (name, choice) in chosen {
-            let fragment = options.get(name).and_then(|it| it.choices.get(choice));
-            // Anything but a map was told of and would wipe out the file.
-            if let Some(fragment) = fragment.filter(|it| it.is_mapping()) {
-                lay_over(&mut layered, fragment);
-            }
-        }
-        layered
-    };
-    let info = |(name, option): (&String, &RawOption)| OptionInfo::new(name, option, &chosen[name]);
-    let infos = options.iter().map(info).collect();
-    let model = compile::compile(&layered(&chosen), infos, &mut problems);
-    match (model, problems.is_empty()) {
-        (Some(model), true) => Ok(model),
-        _ => Err(problems),
-    }
+    ModelFile::parse(text)?.compile(choices, None)
 }
 
 /// Checks `text` whole: as it stands, and with every choice of every option laid over it.
 pub fn check(text: &str) -> Vec<Problem> {
-    let model = match load(text, &Choices::new()) {
-        Ok(model) => model,
+    let file = match ModelFile::parse(text) {
+        Ok(file) => file,
         Err(problems) => return problems,
     };
-    let mut problems = Vec::new();
-    for option in &model.options {
-        for choice in option.choices.iter().filter(|choice| **choice != option.default) {
-            let override_key = Choices::from([(option.name.clone(), choice.clone())]);
-            let fragment = Path::root().key("options").key(&option.name).key("choices").key(choice);
-            for mut problem in load(text, &override_key).err().unwrap_or_default() {
-                problem.path = fragment.join(&problem.path);
-                problems.push(problem);
-            }
+    let mut problems = file.compile(&Choices::new(), None).err().unwrap_or_default();
+    let is_valid = problems.is_empty();
+    if file.options.values().map(|it| it.choices.len()).sum::<usize>() > bounds::CHOICES {
+        return problems;
+    }
+    let mut places = Places::new(&file.tree);
+    for (name, option) in &file.options {
+        for choice in option.choices.keys().filter(|choice| **choice != option.default) {
+            let only = Choices::from([(name.clone(), choice.clone())]);
+            let fragment = Path::root().key("options").key(name).key("choices").key(choice);
+            let mut more = file.compile(&only, Some(&fragment)).err().unwrap_or_default();
+            // What is wrong without the choice was told.
+            more.retain(|it| is_valid || places.find(&it.path, it.at).is_some());
+            problems.append(&mut more);
         }
     }
+    settle(&mut problems, |_| None);
     problems
 }
 
-fn read_options(file: &Value, problems: &mut Vec<Problem>) -> BTreeMap<String, RawOption> {
-    let path = Path::root().key("options");
-    let entries = section::entries(file.get("options"), &path, problems);
-    let read = |(name, path, value): (String, Path, &Value)| {
-        section::read(value, &path, KEYS, problems).map(|option| (name, option))
-    };
-    entries.into_iter().filter_map(read).collect()
+/// A model file, parsed once and compiled with as many choices as are asked for.
+struct ModelFile {
+    tree: Node,
+    options: BTreeMap<String, RawOption>,
+    problems: Vec<Problem>,
+}
+
+impl ModelFile {
+    fn parse(text: &str) -> Result<Self, Vec<Problem>> {
+        let (tree, mut problems) = parse(text)?;
+        let path = Path::root().key("options");
+        let entries = named(tree.get("options"), &path, &mut problems);
+        let read = |(name, path, node): (String, Path, &Node)| {
+            decode(node, &path, &[], &mut problems).map(|option| (name, option))
+        };
+        let options = entries.into_iter().filter_map(read).collect();
+        Ok(Self { tree, options, problems })
+    }
+
+    /// The model with `choices`. What is wrong with it is looked for in `fragment` of the file first, if that is
+    /// what is tried.
+    fn compile(&self, choices: &Choices, fragment: Option<&Path>) -> Result<Model, Vec<Problem>> {
+        let mut problems = self.problems.clone();
+        let chosen = choose(&self.tree, &self.options, choices, &mut problems);
+        let mut tree = self.tree.clone();
+        for (name, choice) in &chosen {
+            // Anything but a map was told of and would wipe out the file.
+            if let Some(over) = options::fragment(&self.tree, name, choice).filter(|it| it.is_map())
+            {
+                tree.lay_over(over);
+            }
+        }
+        let info =
+            |(name, option): (&String, &RawOption)| OptionInfo::new(name, option, &chosen[name]);
+        let infos = self.options.iter().map(info).collect();
+        let model = compile::compile(&tree, infos, &mut problems);
+        if let (Some(model), true) = (model, problems.is_empty()) {
+            return Ok(model);
+        }
+        let (mut layered, mut file) = (Places::new(&tree), Places::new(&self.tree));
+        // A key that a choice lacks is lacking there.
+        for it in problems.iter_mut().filter(|it| fragment.is_some() && !it.path.is_root()) {
+            it.mark = it.mark.filter(|_| layered.find(&it.path, it.at).is_some());
+        }
+        settle(&mut problems, |Problem { path, at, .. }| {
+            let inside = fragment.map(|it| file.find_nearest(&it.join(path), *at));
+            layered.find(path, *at).or(inside).or_else(|| Some(layered.find_nearest(path, *at)))
+        });
+        if let Some(fragment) = fragment {
+            problems.iter_mut().for_each(|it| it.path = fragment.join(&it.path));
+        }
+        Err(problems)
+    }
 }

@@ -1,8 +1,8 @@
 //! Options: one of several readings, chosen by name, as a fragment laid over the file.
 
 use super::raw::RawOption;
-use crate::problem::{Path, Problem, bounds, suggest};
-use serde_yaml::Value;
+use crate::problem::tree::Node;
+use crate::problem::{Path, Problem, bounds, has_unread, suggest};
 use std::collections::BTreeMap;
 
 /// An option of a model, and what was chosen.
@@ -35,8 +35,14 @@ impl OptionInfo {
     }
 }
 
-/// The choice in force for each option, or what is wrong with the options and the settings.
+/// The fragment of `file` that a choice lays over it.
+pub(super) fn fragment<'a>(file: &'a Node, option: &str, choice: &str) -> Option<&'a Node> {
+    file.get("options")?.get(option)?.get("choices")?.get(choice)
+}
+
+/// The choice in force for each option of `file`, or what is wrong with the options and the settings.
 pub(super) fn choose(
+    file: &Node,
     options: &BTreeMap<String, RawOption>,
     override_keys: &BTreeMap<String, String>,
     problems: &mut Vec<Problem>,
@@ -47,18 +53,19 @@ pub(super) fn choose(
     let mut chosen = BTreeMap::new();
     for (name, option) in options {
         let path = Path::root().key("options").key(name);
-        if !option.choices.contains_key(&option.default) {
+        let is_whole = !has_unread(problems, &path.key("choices"));
+        if !option.choices.contains_key(&option.default) && is_whole {
             let what = format!("unknown choice `{}`", option.default);
             let choices = option.choices.keys().map(String::as_str);
             let advice = suggest::did_you_mean(&option.default, choices);
             problems.push(Problem::value(path.key("default"), what).advise_if(advice));
         }
-        if option.choices.len() < 2 {
+        if option.choices.len() < 2 && is_whole {
             let what = "an option needs at least two choices";
             problems.push(Problem::key(path.key("choices"), what));
         }
-        for (choice, fragment) in &option.choices {
-            if !fragment.is_mapping() {
+        for choice in option.choices.keys() {
+            if fragment(file, name, choice).is_some_and(|it| !it.is_map()) {
                 let what = "a choice must be a map; `{}` leaves the file as it is";
                 problems.push(Problem::value(path.key("choices").key(choice), what));
             }
@@ -83,38 +90,4 @@ pub(super) fn choose(
         chosen.insert(name.clone(), choice.clone());
     }
     chosen
-}
-
-/// Lays `fragment` over `file`: maps are merged, `null` removes, anything else replaces.
-pub(super) fn lay_over(file: &mut Value, fragment: &Value) {
-    match (file, fragment) {
-        (Value::Mapping(file), Value::Mapping(fragment)) => {
-            for (key, value) in fragment {
-                match file.get_mut(key) {
-                    _ if value.is_null() => {
-                        file.remove(key);
-                    }
-                    Some(below) => lay_over(below, value),
-                    None => {
-                        file.insert(key.clone(), value.clone());
-                    }
-                }
-            }
-        }
-        (file, fragment) => *file = fragment.clone(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn maps_merge_null_removes_the_rest_replaces() {
-        let mut file: Value = serde_yaml::from_str("{a: {b: 1, c: 2}, d: [1, 2]}").expect("yaml");
-        let over: Value = serde_yaml::from_str("{a: {c: null, e: 3}, d: [4]}").expect("yaml");
-        lay_over(&mut file, &over);
-        let want: Value = serde_yaml::from_str("{a: {b: 1, e: 3}, d: [4]}").expect("yaml");
-        assert_eq!(file, want);
-    }
 }

@@ -1,17 +1,23 @@
-//! What is wrong with a file: found by path, printed by place.
+//! What is wrong with a file: found by path, told at its place.
 //!
-//! A check speaks of a [`Path`] (`line.refuse[2]`), never of a line number. Only [`render`] turns a
-//! path into line, column and caret, by walking the same text once more with a parser that keeps
-//! marks ([`place`]). So checks work the same on a parsed tree, on a fragment laid over it and in tests.
+//! [`parse`] makes a tree of a text, each key and value with its place. [`decode`](decode::decode) reads the raw
+//! structs of a format out of it; what can't be read is a problem, and reading goes on without it. Checks speak of a
+//! [`Path`] (`line.refuse[2]`) and know nothing of lines and columns; [`settle`] gives each problem its place, in
+//! the order of the file. [`render`](render::render) prints them.
 
 pub mod bounds;
-mod path;
-pub mod place;
+pub mod decode;
+mod parse;
+mod place;
 pub mod render;
-pub mod section;
 pub mod suggest;
+mod syntax;
+pub mod tree;
 
-pub use path::{Path, Seg};
+pub use parse::parse;
+pub use place::{Path, Places, Seg};
+
+use std::collections::BTreeSet;
 
 /// One thing that is wrong with a file, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,8 +30,11 @@ pub struct Problem {
     pub what: String,
     /// What to do about it, if there is something to say (`did you mean C06.04 (Jog speed)?`).
     pub advice: Option<String>,
-    /// Where in the text, when the path can't say (a syntax error, the second of two equal keys).
+    /// Where in the text; [`settle`] looks it up where it is not known from the start.
     pub mark: Option<Mark>,
+    /// The value at the path could not be read. Whatever a check finds out about it, or below it, is a
+    /// consequence and not told.
+    pub unread: bool,
 }
 
 /// What the caret of a [`Problem`] stands under.
@@ -51,12 +60,12 @@ pub struct Mark {
 impl Problem {
     /// A problem with the value at `path`.
     pub fn value(path: Path, what: impl Into<String>) -> Self {
-        Self { path, at: At::Value, what: what.into(), advice: None, mark: None }
+        Self { path, at: At::Value, what: what.into(), advice: None, mark: None, unread: false }
     }
 
     /// A problem with the key that ends `path`.
     pub fn key(path: Path, what: impl Into<String>) -> Self {
-        Self { path, at: At::Key, what: what.into(), advice: None, mark: None }
+        Self { at: At::Key, ..Self::value(path, what) }
     }
 
     /// The same problem with advice.
@@ -72,6 +81,20 @@ impl Problem {
         self.advice = advice.or(self.advice);
         self
     }
+
+    /// The same problem at a known place.
+    #[must_use]
+    pub fn marked(mut self, mark: Mark) -> Self {
+        self.mark = Some(mark);
+        self
+    }
+
+    /// The same problem, with a value that could not be read.
+    #[must_use]
+    pub(crate) fn unread(mut self) -> Self {
+        self.unread = true;
+        self
+    }
 }
 
 impl std::fmt::Display for Problem {
@@ -85,4 +108,36 @@ impl std::fmt::Display for Problem {
             None => Ok(()),
         }
     }
+}
+
+/// Could the value at `path`, or one that it is part of, not be read?
+pub fn is_unread(problems: &[Problem], path: &Path) -> bool {
+    problems.iter().any(|it| it.unread && path.starts_with(&it.path))
+}
+
+/// Could the value at `path`, or anything below it, not be read?
+pub fn has_unread(problems: &[Problem], path: &Path) -> bool {
+    problems.iter().any(|it| it.unread && it.path.starts_with(path))
+}
+
+/// Leaves out consequences, gives each problem the place that `find` has for it, and sorts them by that.
+pub fn settle(problems: &mut Vec<Problem>, mut find: impl FnMut(&Problem) -> Option<Mark>) {
+    let mut unread: BTreeSet<Path> = BTreeSet::new();
+    problems.retain(|problem| {
+        let mut above = Some(problem.path.clone());
+        while let Some(path) = above {
+            if unread.contains(&path) {
+                return false;
+            }
+            above = path.parent();
+        }
+        if problem.unread {
+            unread.insert(problem.path.clone());
+        }
+        true
+    });
+    for problem in problems.iter_mut() {
+        problem.mark = problem.mark.or_else(|| find(problem));
+    }
+    problems.sort_by_key(|it| (it.mark.is_none(), it.mark));
 }

@@ -1,118 +1,242 @@
-//! Where every key and value of one YAML text stands: path in, line and column out.
+//! Where things stand: paths through a tree, marks in a text, and how a path finds its mark.
 //!
-//! Deliberately not a reader: it keeps no values and knows no types; `serde` reads the same text on
-//! its own. It does refuse what the reader lets pass or would follow blindly (equal keys, anchors,
-//! a second document, bottomless nesting), because only here these things still have a place.
+//! A character is a character here, however wide it prints.
 
-mod key;
-pub(super) mod lines;
-mod refuse;
-mod syntax;
-mod walk;
+use super::tree::Node;
+use super::{At, Mark};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
 
-use super::{At, Mark, Path, Problem, Seg};
-use key::YamlKey;
-
-/// The marks of all keys and values of one document.
-#[derive(Debug, Default)]
-pub struct Places {
-    root: Option<Node>,
+/// One step of a [`Path`].
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Seg {
+    /// Into a map, by key. Integer keys stand here in decimal, whatever base the file uses.
+    Key(String),
+    /// Into a list, by position from 0.
+    Index(usize),
 }
 
-impl Places {
-    /// Walks `text`. A text that is not YAML gives exactly one problem and no places.
+/// A path from the root of a file to one of its nodes.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Path(Vec<Seg>);
+
+impl Path {
+    /// The root.
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    /// Is this the root?
+    pub fn is_root(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The steps, outermost first.
+    pub fn segs(&self) -> &[Seg] {
+        &self.0
+    }
+
+    /// The path of the entry `key` below this one.
+    #[must_use]
+    pub fn key(&self, key: impl fmt::Display) -> Self {
+        let mut segs = self.0.clone();
+        segs.push(Seg::Key(key.to_string()));
+        Self(segs)
+    }
+
+    /// The path of item `index` below this one.
+    #[must_use]
+    pub fn index(&self, index: usize) -> Self {
+        let mut segs = self.0.clone();
+        segs.push(Seg::Index(index));
+        Self(segs)
+    }
+
+    /// This path with `tail` behind it.
+    #[must_use]
+    pub fn join(&self, tail: &Path) -> Self {
+        Self(self.0.iter().chain(&tail.0).cloned().collect())
+    }
+
+    /// Is this `above`, or somewhere below it?
+    pub fn starts_with(&self, above: &Path) -> bool {
+        self.0.starts_with(&above.0)
+    }
+
+    /// The path of the node above, or `None` at the root.
+    pub fn parent(&self) -> Option<Self> {
+        let (_, above) = self.0.split_last()?;
+        Some(Self(above.to_vec()))
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, seg) in self.0.iter().enumerate() {
+            match seg {
+                Seg::Key(key) if is_plain(key) && i == 0 => write!(f, "{key}")?,
+                Seg::Key(key) if is_plain(key) => write!(f, ".{key}")?,
+                Seg::Key(key) => write!(f, "[{key}]")?,
+                Seg::Index(index) => write!(f, "[{index}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_plain(key: &str) -> bool {
+    key.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
+}
+
+/// The lines of one text, without their ends and without a byte order mark.
+pub(super) struct Lines<'t> {
+    lines: Vec<TextLine<'t>>,
+    /// The last line with text on it, from 1.
+    last: usize,
+}
+
+struct TextLine<'t> {
+    text: &'t str,
+    /// Characters up to the last one that is not blank; counted once, as every mark asks for it.
+    length: usize,
+}
+
+impl<'t> Lines<'t> {
+    pub(super) fn new(text: &'t str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = Vec::new();
+        let mut rest = text;
+        // Not `str::lines`: for YAML a lone carriage return ends a line as well.
+        while let Some(end) = rest.find(['\r', '\n']) {
+            lines.push(TextLine::new(&rest[..end]));
+            let width = if rest[end..].starts_with("\r\n") { 2 } else { 1 };
+            rest = &rest[end + width..];
+        }
+        lines.push(TextLine::new(rest));
+        let last = lines.iter().rposition(|line| line.length > 0).map_or(1, |i| i + 1);
+        Self { lines, last }
+    }
+
+    /// The text of a line, counted from 1.
+    pub(super) fn text(&self, line: usize) -> Option<&'t str> {
+        Some(self.lines.get(line.checked_sub(1)?)?.text)
+    }
+
+    /// A mark of `length` characters, or up to the end of the line if that comes first.
     ///
-    /// The other problems are equal keys of one map, anchors and aliases, nesting deeper than
-    /// 64 levels and a second document. Each carries its own mark.
-    pub fn parse(text: &str) -> (Self, Vec<Problem>) {
-        let (root, problems) = walk::walk(text);
-        (Self { root }, problems)
+    /// Behind all text it moves to the end of the last line that has any: there is nothing to see
+    /// on the empty lines where the parser notices that a bracket was never closed.
+    pub(super) fn mark(&self, line: usize, column: usize, length: usize) -> Mark {
+        if line > self.last {
+            return Mark { line: self.last, column: self.length(self.last) + 1, length: 1 };
+        }
+        let rest = (self.length(line) + 1).saturating_sub(column);
+        Mark { line, column, length: length.min(rest).max(1) }
     }
 
-    /// The mark of the key that ends `path`, or of the value there.
-    ///
-    /// An item of a list has no key, so both are the item. A block map or list that belongs to a
-    /// key is marked at that key, since its text is many lines; so is a value that was left out.
-    /// Equal keys: the first.
-    pub fn find(&self, path: &Path, at: At) -> Option<Mark> {
-        let (spot, arrived) = self.descend(path)?;
-        arrived.then(|| spot.mark(at))
+    fn length(&self, line: usize) -> usize {
+        line.checked_sub(1).and_then(|i| self.lines.get(i)).map_or(0, |line| line.length)
+    }
+}
+
+impl<'t> TextLine<'t> {
+    fn new(text: &'t str) -> Self {
+        Self { text, length: text.trim_end().chars().count() }
+    }
+}
+
+/// Looks places up, many of them in one tree.
+pub struct Places<'a> {
+    root: &'a Node,
+    /// The positions of the keys of large maps, by name; of each the address stands for it.
+    large: BTreeMap<*const Node, BTreeMap<Cow<'a, str>, usize>>,
+}
+
+/// From so many entries on, looking through them one by one takes longer than an index.
+const LARGE: usize = 32;
+
+impl<'a> Places<'a> {
+    /// The places of a tree.
+    pub fn new(root: &'a Node) -> Self {
+        Self { root, large: BTreeMap::new() }
     }
 
-    /// Like [`find`](Self::find); if the path leads nowhere, the key of its deepest ancestor that
-    /// exists. `None` only for a text without any node.
-    pub fn find_nearest(&self, path: &Path, at: At) -> Option<Mark> {
-        let (spot, arrived) = self.descend(path)?;
-        Some(spot.mark(if arrived { at } else { At::Key }))
+    /// The mark of the key that ends `path`, or of the value there. An item of a list has no key, so both are the
+    /// item.
+    pub fn find(&mut self, path: &Path, at: At) -> Option<Mark> {
+        let (mark, arrived) = self.descend(path, at);
+        arrived.then_some(mark)
     }
 
-    /// As far along `path` as the text goes, and whether that is all of it.
-    fn descend(&self, path: &Path) -> Option<(Spot<'_>, bool)> {
-        let root = self.root.as_ref()?;
-        let mut spot = Spot { key: root.mark, node: root };
+    /// The same; if the path leads nowhere, the key of its deepest ancestor that exists.
+    pub fn find_nearest(&mut self, path: &Path, at: At) -> Mark {
+        self.descend(path, at).0
+    }
+
+    /// As far along `path` as the tree goes, and whether that is all of it.
+    fn descend(&mut self, path: &Path, at: At) -> (Mark, bool) {
+        let (mut key, mut node) = (self.root.mark, self.root);
         for seg in path.segs() {
-            match spot.node.child(seg) {
-                Some(child) => spot = child,
-                None => return Some((spot, false)),
+            match self.child(node, seg) {
+                Some((mark, child)) => (key, node) = (mark, child),
+                None => return (key, false),
             }
         }
-        Some((spot, true))
+        (if at == At::Key { key } else { node.mark }, true)
     }
-}
 
-struct Spot<'a> {
-    key: Mark,
-    node: &'a Node,
-}
-
-impl Spot<'_> {
-    fn mark(&self, at: At) -> Mark {
-        match at {
-            At::Key => self.key,
-            At::Value => self.node.mark,
-        }
-    }
-}
-
-#[derive(Debug)]
-struct Node {
-    mark: Mark,
-    kind: NodeKind,
-}
-
-#[derive(Debug)]
-enum NodeKind {
-    Leaf,
-    Map(Vec<NodeEntry>),
-    List(Vec<Node>),
-}
-
-#[derive(Debug)]
-struct NodeEntry {
-    key: YamlKey,
-    mark: Mark,
-    value: Node,
-}
-
-impl Node {
-    fn child(&self, seg: &Seg) -> Option<Spot<'_>> {
-        match (&self.kind, seg) {
-            (NodeKind::Map(entries), Seg::Key(key)) => {
-                let entry = entries.iter().find(|entry| entry.key.is(key))?;
-                Some(Spot { key: entry.mark, node: &entry.value })
+    fn child(&mut self, node: &'a Node, seg: &Seg) -> Option<(Mark, &'a Node)> {
+        let key = match seg {
+            Seg::Key(key) => key,
+            Seg::Index(index) => {
+                return node.items().get(*index).map(|item| (item.mark, item));
             }
-            (NodeKind::List(items), Seg::Index(index)) => {
-                let node = items.get(*index)?;
-                Some(Spot { key: node.mark, node })
-            }
-            _ => None,
-        }
+        };
+        let entries = node.entries();
+        let entry = if entries.len() < LARGE {
+            entries.iter().find(|entry| entry.is(key))
+        } else {
+            let index = self.large.entry(node).or_insert_with(|| {
+                // A name counts before another key's spelling.
+                let spellings =
+                    entries.iter().enumerate().map(|(i, it)| (it.written.as_str().into(), i));
+                let names = entries.iter().enumerate().map(|(i, it)| (it.name(), i));
+                spellings.chain(names).collect()
+            });
+            index.get(key.as_str()).map(|i| &entries[*i])
+        };
+        entry.map(|entry| (entry.key.mark, &entry.value))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::parse;
+
+    #[test]
+    fn cuts_where_yaml_cuts() {
+        let lines = Lines::new("\u{feff}a\r\nb\rc\n\nd\u{2028}e");
+        let all: Vec<_> = (0..8).map(|i| lines.text(i)).collect();
+        let some = ["a", "b", "c", "", "d\u{2028}e"].map(Some);
+        assert_eq!(all[1..6], some);
+        assert_eq!((all[0], all[6]), (None, None));
+    }
+
+    #[test]
+    fn marks_stay_inside() {
+        let lines = Lines::new("中文字  \nab\n\n");
+        let mark = |line, column, length| Mark { line, column, length };
+        assert_eq!(lines.mark(1, 2, 9), mark(1, 2, 2));
+        assert_eq!(lines.mark(2, 1, 1), mark(2, 1, 1));
+        assert_eq!(lines.mark(2, 9, 9), mark(2, 9, 1));
+        assert_eq!(lines.mark(2, 3, 1), mark(2, 3, 1));
+        assert_eq!(lines.mark(4, 1, 1), mark(2, 3, 1));
+        assert_eq!(lines.mark(99, 7, 7), mark(2, 3, 1));
+        assert_eq!(Lines::new("").mark(1, 1, 1), mark(1, 1, 1));
+    }
 
     /// `list.#2.key`, as no key of these tests holds a dot.
     fn path(text: &str) -> Path {
@@ -196,8 +320,9 @@ tagged: !!str 17
             ("list.0", "nothing", "nothing"),
             ("axes.A.jog.deeper", "nothing", "nothing"),
         ];
-        let (places, problems) = Places::parse(TEXT);
+        let (tree, problems) = parse(TEXT).unwrap();
         assert_eq!(problems, []);
+        let mut places = Places::new(&tree);
         for (at, key, value) in table {
             assert_eq!(under(TEXT, places.find(&path(at), At::Key)), key, "key of {at:?}");
             assert_eq!(under(TEXT, places.find(&path(at), At::Value)), value, "value of {at:?}");
@@ -206,7 +331,8 @@ tagged: !!str 17
 
     #[test]
     fn falls_back_to_the_deepest_ancestor() {
-        let (places, _) = Places::parse(TEXT);
+        let (tree, _) = parse(TEXT).unwrap();
+        let mut places = Places::new(&tree);
         for (at, want) in [
             ("axes.A.jog", "5:C06.04"),
             ("axes.A.nowhere.x", "4:A"),
@@ -214,10 +340,12 @@ tagged: !!str 17
             ("model.series.#9", "2:series"),
             ("nowhere", "2:model"),
         ] {
-            assert_eq!(under(TEXT, places.find_nearest(&path(at), At::Value)), want, "{at:?}");
+            assert_eq!(
+                under(TEXT, Some(places.find_nearest(&path(at), At::Value))),
+                want,
+                "{at:?}"
+            );
         }
-        assert_eq!(Places::parse("").0.find_nearest(&Path::root(), At::Value), None);
-        assert_eq!(Places::parse("# only\n").0.find(&Path::root(), At::Value), None);
     }
 
     #[test]
@@ -231,7 +359,15 @@ tagged: !!str 17
             ("\u{feff}a: b", "a", mark(1, 4, 1)),
             ("---\na: b\n...\n", "a", mark(2, 4, 1)),
         ] {
-            assert_eq!(Places::parse(text).0.find(&path(at), At::Value), want, "{text:?}");
+            let (tree, _) = parse(text).unwrap();
+            assert_eq!(Places::new(&tree).find(&path(at), At::Value), want, "{text:?}");
         }
+    }
+
+    #[test]
+    fn reads_like_the_file() {
+        let path = Path::root().key("axis").key("quantities").key("jog.speed");
+        assert_eq!(path.to_string(), "axis.quantities[jog.speed]");
+        assert_eq!(Path::root().key("line").key("refuse").index(2).to_string(), "line.refuse[2]");
     }
 }

@@ -5,18 +5,20 @@
 use super::line::ScenarioLine;
 use super::order::{NoOrder, Order};
 use super::raw::{
-    KEYS, RawCondition, RawCount, RawLevel, RawRegister, RawScenarioStep, RawStepRepeat,
+    RawCondition, RawCount, RawLevel, RawRegister, RawScenario, RawScenarioStep, RawStepRepeat,
 };
 use super::step::{Condition, ScenarioStep, Subject, Test, Trigger};
 use super::{Part, Scenario};
 use crate::bench::BenchLine;
 use crate::bus::Command;
 use crate::event::DriveId;
-use crate::problem::{Path, Problem, bounds, section, suggest};
+use crate::problem::decode::{decode, listed};
+use crate::problem::tree::Node;
+use crate::problem::{
+    Path, Places, Problem, bounds, has_unread, parse as parse_yaml, settle, suggest,
+};
 use crate::time::{Duration, Instant, parse_duration};
 use crate::vocabulary::{Named, Output, Quantity};
-use serde::Deserialize;
-use serde_yaml::Value;
 
 /// The least time from one repetition of a step to the next. At the usual rate a machine that does more often a thing
 /// that takes it some time would do nothing else.
@@ -36,23 +38,17 @@ pub fn check(text: &str) -> Vec<Problem> {
 }
 
 fn read(text: &str, lines: Option<&[BenchLine]>) -> Result<Scenario, Vec<Problem>> {
-    let (file, problems) = section::tree(text)?;
-    if !problems.is_empty() {
-        return Err(problems);
-    }
+    let (file, problems) = parse_yaml(text)?;
     let sites = lines.map(|lines| lines.iter().map(ScenarioLine::new).collect());
     let mut reader = ScenarioReader { sites, problems };
     let scenario = reader.scenario(&file);
-    match reader.problems.is_empty() {
-        true => Ok(scenario),
-        false => Err(reader.problems),
+    let mut problems = reader.problems;
+    if problems.is_empty() {
+        return Ok(scenario);
     }
-}
-
-/// Everything of the file but its steps, which are read one by one.
-#[derive(Deserialize)]
-struct ScenarioHead {
-    limit: Option<String>,
+    let mut places = Places::new(&file);
+    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
+    Err(problems)
 }
 
 struct ScenarioReader<'a> {
@@ -62,34 +58,24 @@ struct ScenarioReader<'a> {
 }
 
 impl ScenarioReader<'_> {
-    fn scenario(&mut self, file: &Value) -> Scenario {
-        let mut head = file.clone();
-        let steps = head.as_mapping_mut().and_then(|head| head.remove("steps"));
+    fn scenario(&mut self, file: &Node) -> Scenario {
         let root = Path::root();
-        let head: Option<ScenarioHead> = section::read(&head, &root, KEYS, &mut self.problems);
+        let head: Option<RawScenario> = decode(file, &root, &["steps"], &mut self.problems);
         let limit = head.and_then(|head| self.limit(head.limit.as_ref(), &root.key("limit")));
         let path = root.key("steps");
-        let items = match steps {
-            Some(Value::Sequence(items)) => items,
-            Some(_) => {
-                self.refuse(&path, "expected a list of steps", None);
-                Vec::new()
-            }
-            None => Vec::new(),
-        };
-        if items.is_empty() && self.problems.is_empty() {
+        let mut steps = listed(file.get("steps"), &path, &mut self.problems);
+        if steps.is_empty() {
             self.problems.push(Problem::key(path.clone(), "a scenario needs at least one step"));
         }
-        let most = bounds::count("steps", items.len(), bounds::STEPS, &path);
-        let items = if most.is_none() { items } else { Vec::new() };
-        self.problems.extend(most);
+        if let Some(most) = bounds::count("steps", steps.len(), bounds::STEPS, &path) {
+            self.problems.push(most);
+            steps.clear();
+        }
         let count = self.sites.as_ref().map_or(1, Vec::len);
         let limit = limit.map(|limit| Instant::ZERO + limit);
         let mut parts = vec![Part { steps: Vec::new(), limit }; count];
-        for (i, value) in items.iter().enumerate() {
-            let path = path.index(i);
-            let raw: Option<RawScenarioStep> =
-                section::read(value, &path, KEYS, &mut self.problems);
+        for (path, node) in steps {
+            let raw: Option<RawScenarioStep> = decode(node, &path, &[], &mut self.problems);
             let Some(raw) = raw else { continue };
             let line = self.line(&raw, &path);
             let step = self.step(&raw, line, &path);
@@ -264,6 +250,9 @@ impl ScenarioReader<'_> {
         path: &Path,
     ) -> Option<Condition> {
         let drive = self.drive(line, raw.unit, drive, &path.key("unit"));
+        if has_unread(&self.problems, path) {
+            return None;
+        }
         let subject = self.subject(raw, line, drive, path);
         let test = self.test(raw, path);
         let condition = Condition { drive, subject: subject?, test: test? };

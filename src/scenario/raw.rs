@@ -95,23 +95,25 @@ pub struct RawCondition {
 
 /// A register.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "expected the name or the address of a register")]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawRegister {
     /// By address.
+    #[serde(rename = "a number (an address)")]
     Address(u16),
     /// By the row's name.
+    #[serde(rename = "a string (a name)")]
     Name(String),
 }
 
 /// What something has to be.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "`on`, `off` or a number")]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawLevel {
     /// A number.
+    #[serde(rename = "a number")]
     Number(i64),
     /// `on` or `off`.
+    #[serde(rename = "a string (`on` or `off`)")]
     Word(String),
 }
 
@@ -130,10 +132,3 @@ pub struct RawStepRepeat {
 pub fn schema() -> serde_json::Value {
     schemars::schema_for!(RawScenario).to_value()
 }
-
-/// Every key of the format, for advice on unknown ones.
-pub const KEYS: &[&str] = &[
-    "above", "after", "at", "below", "do", "every", "expect", "is", "kind", "limit", "line", "n",
-    "name", "quantity", "register", "repeat", "signal", "steps", "times", "unit", "wait", "when",
-    "within",
-];

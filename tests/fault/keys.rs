@@ -2,7 +2,6 @@
 
 use super::{READ, WRITE, ask, drive};
 use drivemu::bench::raw::schema;
-use drivemu::medium::raw;
 use drivemu::time::Duration;
 
 /// What comes back, piece by piece, while a master reads and writes for a while.
@@ -44,14 +43,4 @@ fn each_key_changes_what_passes() {
         };
         assert!(conversation(without) != conversation(with), "`{key}` is inert");
     }
-}
-
-/// Advice on unknown keys comes out of this list.
-#[test]
-fn the_list_of_keys_is_complete() {
-    let schema = schema();
-    let keys = schema["$defs"]["RawFault"]["properties"].as_object().expect("properties");
-    let mut keys: Vec<&str> = keys.keys().map(String::as_str).collect();
-    keys.sort_unstable();
-    assert_eq!(keys, raw::keys());
 }

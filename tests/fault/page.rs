@@ -5,7 +5,7 @@ use crate::documents::fenced;
 use crate::expect::{read, root};
 use crate::kit::{Files, bench_line, line_of, text_of};
 use drivemu::bench::{BuiltinLibrary, DeviceSpec, parse};
-use drivemu::medium::{FaultKind, Preset, raw};
+use drivemu::medium::{FaultKind, Preset};
 use drivemu::problem::render::render;
 use drivemu::testkit::transcript;
 
@@ -47,7 +47,16 @@ fn each_key_has_an_example() {
         assert!(problems.is_empty(), "{}", render(&problems, "faults.md", example));
     }
     keys.sort_unstable();
-    assert_eq!(keys, raw::keys());
+    #[cfg(feature = "cli")]
+    assert_eq!(keys, known().iter().map(String::as_str).collect::<Vec<_>>());
+}
+
+/// The keys of a rule, in order.
+#[cfg(feature = "cli")]
+fn known() -> std::collections::BTreeSet<String> {
+    let schema = drivemu::bench::raw::schema();
+    let known = schema["$defs"]["RawFault"]["properties"].as_object().expect("properties");
+    known.keys().cloned().collect()
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::{READ, RUN, failures};
 use drivemu::bench::BuiltinLibrary;
 use drivemu::problem::render::render;
-use drivemu::scenario::raw::{KEYS, schema};
+use drivemu::scenario::raw::schema;
 use drivemu::testkit::Rig;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -30,7 +30,6 @@ fn run(text: &str) -> String {
 
 #[test]
 fn each_key_changes_what_happens() {
-    let mut seen = BTreeSet::new();
     for key in keys() {
         let base = "name: s, do: [power_cycle]";
         let (without, with) = match key.as_str() {
@@ -71,9 +70,7 @@ fn each_key_changes_what_happens() {
         let without = run(&format!("steps: [{{{without}}}]"));
         let with = run(&format!("{limit}steps: [{{{with}}}]"));
         assert!(without != with, "`{key}` is inert:\n{with}");
-        seen.insert(key);
     }
-    assert_eq!(seen.into_iter().collect::<Vec<_>>(), KEYS);
 }
 
 fn keys() -> BTreeSet<String> {

@@ -114,7 +114,7 @@ fn a_bad_scenario_is_refused() {
         (
             &["run", "yako-closed-loop", "--scenario", "bad.yaml"][..],
             2,
-            "bad.yaml:1:24: steps[0].do[0]: unknown input terminal `X9`",
+            "steps[0].do[0]: unknown input terminal `X9`\n --> bad.yaml:1:24",
         ),
         (
             &["run", "yako-closed-loop", "--scenario", "none.yaml"],

@@ -173,7 +173,7 @@ fn files_that_are_not_for_this_run_stay_as_they_are() {
         (
             "other.yaml",
             "format: 1\ndrives: {line/1: {model: other, rows: {}}}\n",
-            "other.yaml:2:26: drives[line/1].model: line/1 is other in this file and hcfa-x in this run",
+            "drives[line/1].model: line/1 is other in this file and hcfa-x in this run\n --> other.yaml:2:26",
         ),
         ("later.yaml", "format: 7\n", "a later version wrote this file"),
         ("broken.yaml", "format: 1\ndrives: {", "broken.yaml:2:"),

@@ -4,9 +4,11 @@ use super::{FORMAT, name};
 use crate::bank::{Kept, KeptRow};
 use crate::bench::Device;
 use crate::model::{Model, Shows};
-use crate::problem::{Path, Problem, section, suggest};
+use crate::problem::decode::{decode, named};
+use crate::problem::tree::Node;
+use crate::problem::{Path, Places, Problem, parse, settle, suggest};
 use serde::Deserialize;
-use serde_yaml::Value;
+use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
 
 /// What an earlier run has left: each memory is given to the drive that it belongs to.
@@ -14,6 +16,8 @@ use std::collections::BTreeMap;
 /// The default is that of a first run, which finds nothing.
 #[derive(Debug, Default)]
 pub struct Saved {
+    /// The file; `None` at a first run.
+    file: Option<Node>,
     /// The sections that nobody has taken yet.
     left: Vec<Section>,
     /// The drives that have asked, each with its model.
@@ -25,13 +29,14 @@ pub struct Saved {
 struct Section {
     name: String,
     path: Path,
-    value: Value,
+    node: Node,
 }
 
 #[derive(Deserialize)]
 struct RawStateFile {
     format: u32,
-    drives: Value,
+    #[serde(rename = "drives")]
+    _drives: BTreeMap<String, IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -49,32 +54,27 @@ struct RawSavedRow {
     writes: u32,
 }
 
-/// Every key of the format, for advice on unknown ones.
-const KEYS: &[&str] = &["drives", "format", "model", "rows", "saves", "value", "writes"];
-
 impl Saved {
     /// Reads `text` as far as that goes without knowing the drives.
     ///
     /// # Errors
     /// Everything that is wrong so far.
     pub fn read(text: &str) -> Result<Self, Vec<Problem>> {
-        let (file, mut problems) = section::tree(text)?;
+        let (file, mut problems) = parse(text)?;
         if let Some(problem) = of_the_future(&file) {
             return Err(vec![problem]);
         }
         let root = Path::root();
-        let raw: Option<RawStateFile> = section::read(&file, &root, KEYS, &mut problems);
-        let path = root.key("drives");
-        let drives = raw.as_ref().map(|raw| &raw.drives);
-        let left = section::entries(drives, &path, &mut problems).into_iter();
-        let left = left.map(|(name, path, value)| Section { name, path, value: value.clone() });
+        let raw: Option<RawStateFile> = decode(&file, &root, &["drives"], &mut problems);
+        let left = named(file.get("drives"), &root.key("drives"), &mut problems).into_iter();
+        let left = left.map(|(name, path, node)| Section { name, path, node: node.clone() });
         let left = left.collect();
         if raw.is_some_and(|raw| raw.format != FORMAT) {
             problems.push(other_format(&file));
         }
         match problems.is_empty() {
-            true => Ok(Self { left, ..Self::default() }),
-            false => Err(problems),
+            true => Ok(Self { file: Some(file), left, ..Self::default() }),
+            false => Err(placed(problems, &file)),
         }
     }
 
@@ -97,20 +97,23 @@ impl Saved {
     /// Everything that is wrong; then no drive may be switched on with what it was given.
     pub fn finish(mut self) -> Result<(), Vec<Problem>> {
         for section in &self.left {
-            let model = section.value.get("model").and_then(Value::as_str).unwrap_or("no model");
+            let model = section.node.get("model").and_then(Node::as_text).unwrap_or("no model");
             let what = format!("this run has no drive {} ({model})", section.name);
             let advice = format!("it has {}", self.asked.join(", "));
             self.problems.push(Problem::key(section.path.clone(), what).advise(advice));
         }
         match self.problems.is_empty() {
             true => Ok(()),
-            false => Err(self.problems),
+            false => Err(match &self.file {
+                Some(file) => placed(self.problems, file),
+                None => self.problems,
+            }),
         }
     }
 
     fn kept(&mut self, section: &Section, model: &Model) -> Option<Kept> {
-        let Section { name, path, value } = section;
-        let raw: RawSavedDrive = section::read(value, path, KEYS, &mut self.problems)?;
+        let Section { name, path, node } = section;
+        let raw: RawSavedDrive = decode(node, path, &[], &mut self.problems)?;
         if raw.model != model.name {
             let (got, want) = (&raw.model, &model.name);
             let what = format!("{name} is {got} in this file and {want} in this run");
@@ -150,15 +153,21 @@ impl Saved {
     }
 }
 
-/// A file of a later format: all else that is odd about it is news, not mistakes.
-fn of_the_future(file: &Value) -> Option<Problem> {
-    let format = file.get("format")?.as_u64()?;
-    (format > FORMAT.into())
-        .then(|| other_format(file).advise("a later version wrote this file: use that version"))
+fn placed(mut problems: Vec<Problem>, file: &Node) -> Vec<Problem> {
+    let mut places = Places::new(file);
+    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
+    problems
 }
 
-fn other_format(file: &Value) -> Problem {
-    let format = file.get("format").and_then(Value::as_u64).unwrap_or_default();
+/// A file of a later format: all else that is odd about it is news, not mistakes.
+fn of_the_future(file: &Node) -> Option<Problem> {
+    let format = file.get("format")?;
+    let problem = other_format(file).advise("a later version wrote this file: use that version");
+    (format.as_u64()? > FORMAT.into()).then(|| problem.marked(format.mark))
+}
+
+fn other_format(file: &Node) -> Problem {
+    let format = file.get("format").and_then(Node::as_u64).unwrap_or_default();
     let what = format!("unsupported format {format}; this version reads format {FORMAT}");
     Problem::value(Path::root().key("format"), what)
 }

@@ -1,8 +1,9 @@
 //! Folded rows unfolded: repeats and fills become one list of rows, each with its path in the file.
 
-use crate::model::raw::{KEYS, RawFill, RawRow, RawRowRepeat, RawSim, RawType};
-use crate::problem::{Path, Problem, bounds, section};
-use serde_yaml::Value;
+use crate::model::raw::{RawFill, RawRow, RawRowRepeat, RawSim, RawType};
+use crate::problem::decode::{decode, named};
+use crate::problem::tree::Node;
+use crate::problem::{Path, Problem, bounds, is_unread};
 use std::collections::BTreeMap;
 
 /// A row as it is written, with the key it got and the place it came from.
@@ -17,32 +18,61 @@ const ROWS_MAX: usize = 60_000;
 
 /// All rows of `file`, in the order of their keys, and the keys of those that can't be read: they are
 /// problems and left out.
-pub(super) fn expand(file: &Value, problems: &mut Vec<Problem>) -> (Vec<ExpandedRow>, Vec<String>) {
+pub(super) fn expand(file: &Node, problems: &mut Vec<Problem>) -> (Vec<ExpandedRow>, Vec<String>) {
     let (mut entries, mut lost) = (Vec::new(), Vec::new());
     let path = Path::root().key("registers");
-    for (id, path, value) in section::entries(file.get("registers"), &path, problems) {
-        match section::read::<RawRow>(value, &path, KEYS, problems) {
-            Some(row) => entries.push(ExpandedRow { id, path, row }),
-            None => lost.push(id),
-        }
+    for (id, path, row) in rows(file.get("registers"), &path, &mut lost, problems) {
+        entries.push(ExpandedRow { id, path, row });
     }
     let path = Path::root().key("repeats");
-    for (_, path, value) in section::entries(file.get("repeats"), &path, problems) {
-        if let Some(repeat) = section::read::<RawRowRepeat>(value, &path, KEYS, problems) {
-            unroll(&repeat, &path, &mut entries, problems);
+    for (_, path, node) in named(file.get("repeats"), &path, problems) {
+        let before = problems.len();
+        let repeat: Option<RawRowRepeat> = decode(node, &path, &["registers"], problems);
+        let is_known = problems.len() == before;
+        let below = path.key("registers");
+        let rows = rows(node.get("registers"), &below, &mut lost, problems);
+        match repeat.filter(|_| is_known) {
+            Some(repeat) => unroll(&repeat, &rows, &path, &mut entries, problems),
+            None => lost.extend(rows.into_iter().map(|(id, ..)| id)),
         }
     }
     let path = Path::root().key("fill");
-    for (_, path, value) in section::entries(file.get("fill"), &path, problems) {
-        if let Some(area) = section::read::<RawFill>(value, &path, KEYS, problems) {
-            fill(&area, &path, &mut entries, problems);
+    for (_, path, node) in named(file.get("fill"), &path, problems) {
+        let before = problems.len();
+        let area: Option<RawFill> = decode(node, &path, &[], problems);
+        match area {
+            Some(area) if problems.len() == before => fill(&area, &path, &mut entries, problems),
+            Some(area) => lost.push(area.id),
+            None => {}
         }
     }
     (entries, lost)
 }
 
+/// The rows of a map. One whose address or type can't be read is lost.
+fn rows(
+    node: Option<&Node>,
+    path: &Path,
+    lost: &mut Vec<String>,
+    problems: &mut Vec<Problem>,
+) -> Vec<(String, Path, RawRow)> {
+    let mut rows = Vec::new();
+    for (id, path, node) in named(node, path, problems) {
+        let before = problems.len();
+        let row: Option<RawRow> = decode(node, &path, &[], problems);
+        let is_lost =
+            ["at", "type"].iter().any(|key| is_unread(&problems[before..], &path.key(key)));
+        match row.filter(|_| !is_lost) {
+            Some(row) => rows.push((id, path, row)),
+            None => lost.push(id),
+        }
+    }
+    rows
+}
+
 fn unroll(
     repeat: &RawRowRepeat,
+    rows: &[(String, Path, RawRow)],
     path: &Path,
     entries: &mut Vec<ExpandedRow>,
     problems: &mut Vec<Problem>,
@@ -58,19 +88,18 @@ fn unroll(
         return problems.push(Problem::value(path.key("stride"), what));
     }
     let copies = usize::from(last - first) + 1;
-    let size = repeat.registers.values().map(text_size).sum::<usize>() * copies;
-    if copies * repeat.registers.len() + entries.len() > ROWS_MAX {
+    let size = rows.iter().map(|(.., row)| text_size(row)).sum::<usize>() * copies;
+    if copies * rows.len() + entries.len() > ROWS_MAX {
         return problems.push(Problem::value(path.key("n"), "more rows than a model can have"));
     }
     if size > bounds::EXPANDED {
         let what = bounds::expanded();
         return problems.push(Problem::value(path.key("n"), what));
     }
-    for (key, row) in &repeat.registers {
-        let path = path.key("registers").key(key);
+    for (key, path, row) in rows {
         if first != last && !key.contains("{n") {
             let what = "all copies would have the same name";
-            problems.push(Problem::key(path, what).advise("add {n} to the key"));
+            problems.push(Problem::key(path.clone(), what).advise("add {n} to the key"));
             continue;
         }
         for n in first..=last {
@@ -176,17 +205,6 @@ pub(super) fn number(text: &str, n: u16) -> String {
         rest = after;
     }
     out + rest
-}
-
-/// Everything of `file` but rows and options, which are read one by one.
-pub(super) fn without_rows(file: &Value) -> Value {
-    let mut file = file.clone();
-    if let Value::Mapping(map) = &mut file {
-        for key in ["registers", "repeats", "fill", "options"] {
-            map.remove(key);
-        }
-    }
-    file
 }
 
 #[cfg(test)]

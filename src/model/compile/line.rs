@@ -13,7 +13,7 @@ use crate::model::{
     Access, Coded, HoldTime, LineRules, LongAccess, Reaction, Refuse, Row, RowId, UnitRule,
     WireFormat, WordOrder,
 };
-use crate::problem::{At, Path, Problem, suggest};
+use crate::problem::{At, Path, Problem, has_unread, suggest};
 use crate::serial::Format;
 use crate::time::Duration;
 use crate::vocabulary::{Cause, Named};
@@ -238,7 +238,8 @@ pub(super) fn code_rules<T>(
     }
     let factory = row.kind.value(row.init);
     let init = code_in(factory, digit);
-    if row.admits(factory) && !codes.contains_key(&init) {
+    let is_whole = !has_unread(names.problems, &path.key("codes"));
+    if row.admits(factory) && !codes.contains_key(&init) && is_whole {
         let what = format!("the factory value of {}, {init}, is not in `codes`", row.id);
         names.report(Problem::key(path.key("codes"), what));
     }
@@ -250,6 +251,9 @@ fn refuse(raw: &RawLine, path: &Path, names: &mut Names) -> Refuse {
     let mut meant: Vec<Cause> = Vec::new();
     for (i, rung) in raw.refuse.iter().enumerate() {
         let path = path.index(i);
+        if has_unread(names.problems, &path) {
+            continue;
+        }
         if rung.len() != 1 {
             let what = "one cause per entry: their order matters";
             names.report(Problem::value(path.clone(), what).advise("- {function: 0x01}"));
@@ -276,6 +280,9 @@ fn refuse(raw: &RawLine, path: &Path, names: &mut Names) -> Refuse {
         }
     }
     let listed: Vec<Cause> = ladder.iter().map(|(cause, _)| *cause).chain(meant).collect();
+    if has_unread(names.problems, path) {
+        return Refuse::new(ladder);
+    }
     for cause in possible_causes(raw, names).into_iter().filter(|cause| !listed.contains(cause)) {
         let what =
             format!("the drive can refuse for `{}`, which has no exception code", cause.name());

@@ -26,24 +26,26 @@ mod wired;
 
 pub use names::duration;
 
-use super::raw::{KEYS, RawModel};
+use super::raw::RawModel;
 use super::{Model, NotSimulated, OptionInfo, RowId, ServoWiring, Station, Wiring};
-use crate::problem::{Path, Problem, section};
+use crate::problem::decode::decode;
+use crate::problem::tree::Node;
+use crate::problem::{Path, Problem};
 use crate::time::Duration;
 use names::Names;
-use serde_yaml::Value;
 use uses::Uses;
 use wired::Wired;
 
 /// Compiles `file`. Its options are chosen and laid over it already.
 pub(super) fn compile(
-    file: &Value,
+    file: &Node,
     options: Vec<OptionInfo>,
     problems: &mut Vec<Problem>,
 ) -> Option<Model> {
     // The rows, and the rest of the file as it is written.
     let (entries, lost) = expand::expand(file, problems);
-    let raw: RawModel = section::read(&expand::without_rows(file), &Path::root(), KEYS, problems)?;
+    let later = ["registers", "repeats", "fill", "options"];
+    let raw: RawModel = decode(file, &Path::root(), &later, problems)?;
     let rows = rows::compile(entries, lost, &raw.windows, problems);
     let names = &mut Names { rows: &rows, problems };
     identity(&raw, names);

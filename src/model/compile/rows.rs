@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub(super) struct Rows {
     pub map: Map,
     pub paths: Vec<Path>,
-    /// Names of rows that were left out, each for a problem of its own.
+    /// Names of rows that were left out, each for a problem of its own; with `{n}` in those of copies.
     lost: Vec<String>,
 }
 
@@ -26,7 +26,7 @@ impl Rows {
             return Some(id);
         }
         // What is wrong with that row was told.
-        if self.lost.iter().any(|lost| lost == id) {
+        if self.lost.iter().any(|lost| is_one_of(id, lost)) {
             return None;
         }
         let ids = self.map.rows().map(|(_, row)| row.id.as_str());
@@ -38,6 +38,13 @@ impl Rows {
         problems.push(Problem::value(path.clone(), what).advise_if(advice));
         None
     }
+}
+
+/// Is `id` the name `lost`, or that of one of its copies?
+fn is_one_of(id: &str, lost: &str) -> bool {
+    let Some((before, rest)) = lost.split_once("{n") else { return id == lost };
+    let after = rest.split_once('}').map_or("", |(_, after)| after);
+    id.starts_with(before) && id.ends_with(after)
 }
 
 pub(super) fn compile(

@@ -1,8 +1,6 @@
 //! Homing and limits of an axis.
 
-use serde::de::{DeserializeOwned, Error};
-use serde::{Deserialize, Deserializer};
-use serde_yaml::Value;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 
 #[cfg(feature = "cli")]
@@ -38,26 +36,15 @@ pub struct RawHoming {
 }
 
 /// Always the same, or as a row says.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawChoice<T> {
     /// As a row says.
+    #[serde(rename = "a map with register or codes")]
     Row(RawChosen<T>),
     /// Always the same.
+    #[serde(rename = "anything else")]
     Fixed(T),
-}
-
-/// Told apart by their keys, so that what is wrong with one is not told of the other.
-impl<'de, T: DeserializeOwned> Deserialize<'de> for RawChoice<T> {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let value = Value::deserialize(from)?;
-        let by_row = ["register", "codes"].iter().any(|key| value.get(key).is_some());
-        let read = match by_row {
-            true => RawChosen::deserialize(value).map(Self::Row),
-            false => T::deserialize(value).map(Self::Fixed),
-        };
-        read.map_err(D::Error::custom)
-    }
 }
 
 /// A row, or one hex digit of it, whose values stand for something.

@@ -122,15 +122,13 @@ pub enum RawLengthCheck {
 
 /// Which word of a pair stands at the lower address: always the same, or as a register says.
 #[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(
-    untagged,
-    expecting = "expected high_word_first, low_word_first or {register: ROW, codes: {0: high_word_first, ...}}"
-)]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawWordOrder {
     /// Always the same.
+    #[serde(rename = "a string (high_word_first or low_word_first)")]
     Fixed(RawOrder),
     /// As a register says.
+    #[serde(rename = "a map (register, codes)")]
     Register {
         /// The row.
         register: String,

@@ -1,19 +1,19 @@
 //! The row of a number, and when a value written to it counts.
 
-use serde::de::Error;
-use serde::{Deserialize, Deserializer};
-use serde_yaml::Value;
+use serde::Deserialize;
 
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
 /// The row that holds a number, or a number with its unit where an output goes by it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawQuantity {
     /// The row, or the number.
+    #[serde(rename = "a string (a row)")]
     Register(String),
     /// The row of a setting, and when its values count.
+    #[serde(rename = "a map (register, taken)")]
     Setting(RawSetting),
 }
 
@@ -44,17 +44,5 @@ impl RawQuantity {
             Self::Register(_) => None,
             Self::Setting(it) => it.taken.as_deref(),
         }
-    }
-}
-
-/// Told apart by their shape, so that what is wrong with one is not told of the other.
-impl<'de> Deserialize<'de> for RawQuantity {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let value = Value::deserialize(from)?;
-        let read = match value {
-            Value::Mapping(_) => RawSetting::deserialize(value).map(Self::Setting),
-            _ => String::deserialize(value).map(Self::Register),
-        };
-        read.map_err(D::Error::custom)
     }
 }

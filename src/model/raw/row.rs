@@ -84,12 +84,13 @@ pub enum RawType {
 
 /// One span of values, or several.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "expected [low, high], or a list of such pairs")]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawRange {
     /// `[low, high]`, both included.
+    #[serde(rename = "a list of numbers [low, high]")]
     One([i64; 2]),
     /// `[[low, high], ...]`.
+    #[serde(rename = "a list of lists")]
     Many(Vec<[i64; 2]>),
 }
 

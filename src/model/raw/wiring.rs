@@ -215,12 +215,13 @@ pub struct RawGear {
 
 /// Counts for one revolution.
 #[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(untagged, expecting = "expected a number of counts, or a row")]
+#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawCounts {
     /// This many.
+    #[serde(rename = "a number of counts")]
     Number(u32),
     /// As many as the row says.
+    #[serde(rename = "a string (a row)")]
     Row(String),
 }
 

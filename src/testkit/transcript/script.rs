@@ -1,8 +1,9 @@
 //! The text of a transcript, line by line, as steps.
 
 use super::TranscriptFailure;
-use crate::bench::raw::{self, RawMachine};
-use crate::problem::{Path, Problem, section};
+use crate::bench::raw::RawMachine;
+use crate::problem::decode::decode;
+use crate::problem::{Path, Problem, parse};
 use crate::serial::Settings;
 use crate::testkit::hex;
 use crate::time::{Duration, parse_duration};
@@ -178,13 +179,11 @@ impl Script {
 
 /// A machine as a bench has it, on one line.
 fn machine(text: &str) -> Result<RawMachine, String> {
-    let value = serde_yaml::from_str(text).map_err(|error| error.to_string())?;
-    let mut problems = Vec::new();
-    let machine = section::read(&value, &Path::root(), &raw::keys(), &mut problems);
-    match (machine, problems.first()) {
-        (Some(machine), None) => Ok(machine),
-        (_, problem) => Err(problem.map(Problem::to_string).unwrap_or_default()),
-    }
+    let read = parse(text).and_then(|(tree, mut problems)| {
+        let machine = decode(&tree, &Path::root(), &[], &mut problems);
+        machine.filter(|_| problems.is_empty()).ok_or(problems)
+    });
+    read.map_err(|problems| problems.first().map(Problem::to_string).unwrap_or_default())
 }
 
 fn unit(text: &str) -> Result<Option<u8>, String> {

@@ -3,12 +3,12 @@
 //! Deliberately not a diagnosis: it rewords what people run into and leaves the rest as the parser
 //! said it.
 
-use super::super::{Mark, Path, Problem};
+use super::{Mark, Path, Problem};
 
 /// The problem for what the parser says at `mark`.
 pub(super) fn problem(info: &str, mark: Mark) -> Problem {
     let (what, advice) = words(info);
-    Problem { mark: Some(mark), ..Problem::value(Path::root(), what).advise_if(advice) }
+    Problem::value(Path::root(), what).advise_if(advice).marked(mark)
 }
 
 fn words(info: &str) -> (String, Option<String>) {
@@ -59,7 +59,7 @@ const WORDS: &[(&str, &str, &str)] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::super::Places;
+    use crate::problem::parse;
 
     #[test]
     fn one_problem_in_plain_words() {
@@ -80,12 +80,12 @@ mod tests {
             ("a: [1\n  b: c\n  d: e", 2, 4, "unexpected `:`"),
             ("%YAML 1.2 x\n", 1, 1, "not YAML: while scanning a directive"),
         ] {
-            let (places, problems) = Places::parse(text);
+            let problems = parse(text).expect_err("no tree");
             let [problem] = &problems[..] else { panic!("{text:?}: {problems:?}") };
             let mark = problem.mark.unwrap();
             assert!(problem.what.starts_with(what), "{text:?}: {problem:?}");
             assert_eq!((mark.line, mark.column), (line, column), "{text:?}: {problem:?}");
-            assert!(places.root.is_none() && problem.path.is_root());
+            assert!(problem.path.is_root());
         }
     }
 }
