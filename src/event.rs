@@ -1,19 +1,32 @@
-//! What happened: the values that the log, the tests and later tools are made from. No text here.
+//! What happened: self-contained values that the log and the tests are made from.
+//!
+//! One definition each: the variants and fields, with their documentation, are the public JSON log; `Display` is the
+//! text log. Neither needs the bus or a drive, so both can be made on another thread, later. What a drive would have
+//! to say about its numbers travels with them ([`Decoder`]).
 
+mod decoder;
+mod drive_display;
+mod drive_event;
 mod no_effect;
-mod replanned;
+mod transaction;
 
-pub use no_effect::{Ignored, Ordered};
-pub use replanned::Replanned;
+pub use decoder::{DecodedRequest, Decoder, Item, RowName, TerminalName};
+pub use drive_event::{ChainEnd, DeviceFaultChange, DriveEvent, MilliRpm, Replanned};
+pub use no_effect::{Ignored, NoEffect, Ordered, REASONS, ReasonEntry};
+pub use transaction::{Broadcast, Transaction};
 
+use crate::line::Units;
 use crate::medium::FaultHit;
 use crate::serial::{Mode, Settings};
-use crate::time::{Duration, Instant};
-use crate::vocabulary::{Action, AlarmCause, Condition, HomeEnd, HomingStep, Refusal, RowId};
+use crate::text::one_line;
+use crate::time::Instant;
+use crate::vocabulary::{Action, AlarmCause, Named};
 use crate::wire::ascii::BadAscii;
 use crate::wire::mbap::BadHeader;
 use crate::wire::rtu::BadCrc;
-use crate::wire::{Frame, Inline, NoiseCause, Pdu};
+use crate::wire::{BROADCAST, Frame, Inline, NoiseCause, Pdu};
+use serde::{Serialize, Serializer};
+use std::fmt;
 
 /// Something that happened on a line, and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +34,7 @@ pub struct Event {
     /// When, in the emulated world.
     pub at: Instant,
     /// What.
-    pub what: What,
+    pub kind: EventKind,
 }
 
 /// Number of a drive on its bus, from 0.
@@ -29,95 +42,159 @@ pub struct Event {
 pub struct DriveId(pub u16);
 
 /// What happened.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum What {
-    /// A drive heard a request and answered.
-    Transaction(Transaction),
-    /// A drive executed a broadcast, or refused to; either way it did not answer.
-    Broadcast {
-        /// Who.
-        drive: DriveId,
-        /// Its unit address at the time.
-        unit: u8,
-        /// The request's PDU.
-        request: Pdu,
-        /// Why it did not execute it.
-        refusal: Option<Refusal>,
-    },
-    /// A broadcast that nobody can execute, because it asks for an answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub enum EventKind {
+    /// A drive executed a broadcast, or refused to; either way there is no reply.
+    Broadcast(
+        #[cfg_attr(feature = "cli", schemars(with = "transaction::BroadcastFields"))] Broadcast,
+    ),
+    /// A read was broadcast, to which nothing can reply.
     BroadcastRead {
-        /// The request's PDU.
+        /// The PDU of the request.
         request: Pdu,
     },
-    /// Traffic of others.
+    /// Traffic of other devices: a request to a unit that is not reachable on this line, or a reply of another device.
     Foreign {
-        /// Its unit address.
+        /// The unit address in it, 0 to 255.
         unit: u8,
-        /// PDU.
+        /// The PDU.
         pdu: Pdu,
-        /// An answer rather than a request?
-        answer: bool,
+        /// A reply, not a request?
+        reply: bool,
+        /// Which units there are instead, where a request has no reply.
+        #[serde(skip)]
+        here: Option<Here>,
     },
     /// A frame with a wrong CRC.
     BadCrc {
-        /// The frame.
+        /// The frame, with its CRC.
         frame: Frame,
-        /// Both values.
-        crc: BadCrc,
-        /// The drive that answers such a frame with an exception, and the code.
-        answered: Option<(DriveId, u8)>,
+        /// The CRC in the frame, as it was received.
+        got: Inline<2>,
+        /// The CRC of its bytes.
+        expected: Inline<2>,
+        /// The exception code that the drive replied with; null without a reply.
+        exception: Option<u8>,
     },
-    /// An ASCII frame that does not add up.
+    /// An ASCII frame that cannot be decoded.
     BadAscii {
-        /// Its characters.
+        /// The characters between `:` and CR LF.
+        #[serde(serialize_with = "lossy_text")]
+        #[cfg_attr(feature = "cli", schemars(with = "String"))]
         characters: Frame,
-        /// Why.
+        /// Why, as a sentence.
+        #[serde(serialize_with = "sentence")]
+        #[cfg_attr(feature = "cli", schemars(with = "String"))]
         why: BadAscii,
     },
     /// Bytes that are no frame.
     Noise {
-        /// The first of them.
+        /// The first of them, at most 16.
+        #[serde(rename = "bytes")]
         head: Inline<16>,
-        /// How many there were.
+        /// How many bytes there were.
+        #[serde(rename = "length")]
         len: usize,
-        /// Why they are none.
+        /// Why they are no frame.
+        #[serde(serialize_with = "sentence")]
+        #[cfg_attr(feature = "cli", schemars(with = "String"))]
         why: NoiseCause,
     },
-    /// All drives of the line talk in another mode now, and the line goes with them.
-    Moved(Mode),
-    /// The port of the master is set to something else than the line, or no longer.
-    Port {
-        /// How both are set.
-        port: PortSettings,
-        /// Does the line understand it?
-        understood: bool,
+    /// All drives of the line changed their serial settings to these, and the port follows.
+    LineSettings {
+        /// The new settings, such as `9600-8N2 RTU`.
+        mode: Mode,
     },
-    /// A TCP stream that could not be followed and was closed.
-    Lost(BadHeader),
-    /// A fault rule did something to a request or its reply.
+    /// The port of the master is set differently from the line, or no longer is.
+    PortSettings {
+        /// The baud rate of the master's port.
+        baud: u32,
+        /// Its stop bits, 1 or 2.
+        stop_bits: u8,
+        /// How the line is set, such as `9600-8N2`.
+        #[serde(rename = "line_settings")]
+        line: Settings,
+        /// Do baud rate and stop bits match?
+        fits: bool,
+        /// Does what the master sends reach the drives nevertheless?
+        passes: bool,
+    },
+    /// A TCP stream lost its framing and was closed.
+    StreamClosed {
+        /// Why, as a sentence.
+        #[serde(serialize_with = "sentence")]
+        #[cfg_attr(feature = "cli", schemars(with = "String"))]
+        why: BadHeader,
+    },
+    /// A fault rule acted on a request or its reply.
     Fault(FaultHit),
-    /// A step of a scenario.
-    Step(RemarkId),
-    /// A master has given an order again whose answer it can't have heard, and the drive got it twice.
+    /// A step of a scenario started or ended.
+    Step(Remark),
+    /// A master repeated a command whose first reply cannot have reached it, and the drive received it twice.
     RepeatedCommand {
-        /// Who.
+        /// Which drive.
+        #[serde(skip)]
         drive: DriveId,
         /// The unit address that was asked.
         unit: u8,
-        /// The order.
+        /// The command.
         action: Action,
-        /// How often that has happened to this drive by now.
+        /// How often this has happened to the drive so far, from 1.
         count: u64,
     },
-    /// A drive did something without being asked on this line, or as a consequence.
+    /// A drive received a request and replied.
+    #[serde(untagged)]
+    Transaction(
+        #[cfg_attr(feature = "cli", schemars(with = "transaction::TransactionFields"))] Transaction,
+    ),
+    /// Something happened in a drive.
+    #[serde(untagged)]
     Drive {
-        /// Who.
+        /// Which drive.
+        #[serde(skip)]
         drive: DriveId,
-        /// Its unit address at the time.
+        /// The unit address of the drive, 0 to 255.
         unit: u8,
+        /// How a serial line was set then.
+        #[serde(skip)]
+        line: Option<Mode>,
         /// What.
-        change: Change,
+        #[serde(flatten)]
+        event: DriveEvent,
     },
+}
+
+impl From<Transaction> for EventKind {
+    fn from(transaction: Transaction) -> Self {
+        Self::Transaction(transaction)
+    }
+}
+
+impl From<Broadcast> for EventKind {
+    fn from(broadcast: Broadcast) -> Self {
+        Self::Broadcast(broadcast)
+    }
+}
+
+impl EventKind {
+    /// A frame whose CRC is wrong, and the exception that was replied, if any.
+    pub fn bad_crc(frame: Frame, crc: BadCrc, exception: Option<u8>) -> Self {
+        let bytes = |crc: u16| Inline::from_slice(&crc.to_le_bytes());
+        Self::BadCrc { frame, got: bytes(crc.got), expected: bytes(crc.want), exception }
+    }
+}
+
+/// Why nothing replies to a request: who is on the line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Here {
+    /// The unit that was asked, without power.
+    NoPower,
+    /// The unit that was asked, with other serial settings, or with undefined ones.
+    SetTo(Option<Mode>),
+    /// These units.
+    Units(Units),
 }
 
 /// How the port of a master is set, and the line behind it.
@@ -137,289 +214,43 @@ impl PortSettings {
         self.baud == self.line.baud
     }
 
+    /// The event that tells of it; does what the master sends pass nevertheless?
+    pub fn event(self, passes: bool) -> EventKind {
+        let Self { baud, stop_bits, line } = self;
+        EventKind::PortSettings { baud, stop_bits, line, fits: self.fits(), passes }
+    }
+
     /// Are they the same, as far as can be seen?
     pub fn fits(self) -> bool {
         self.same_baud() && self.stop_bits == self.line.format.stop_bits
     }
 }
 
-/// Number of a remark on its bus, from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RemarkId(pub u32);
-
 /// What is to be told of a step of a scenario.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Remark {
-    /// Its name.
+    /// The name of the step.
     pub step: String,
     /// What became of it.
     pub outcome: Outcome,
-    /// Why it failed.
+    /// Why it failed, if it did.
+    #[serde(rename = "why", skip_serializing_if = "String::is_empty")]
     pub what: String,
 }
 
 /// What became of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Outcome {
-    /// What it waited for has come.
+    /// It started.
+    #[serde(rename = "started")]
     Begins,
     /// What it expects holds.
     Passed,
     /// It does not hold, or something could not be done.
     Failed,
-}
-
-/// A request to one drive and its answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Transaction {
-    /// Who.
-    pub drive: DriveId,
-    /// The unit address that was asked.
-    pub unit: u8,
-    /// The request's PDU.
-    pub request: Pdu,
-    /// The answer's PDU.
-    pub answer: Pdu,
-    /// Why it was refused, if it was.
-    pub refusal: Option<Refusal>,
-}
-
-/// A change in a drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
-    /// Power came on.
-    PoweredOn,
-    /// Power went off.
-    PoweredOff,
-    /// Initialised: it can be enabled.
-    Ready,
-    /// The power stage went on or off.
-    Enabled(bool),
-    /// An alarm was raised.
-    Alarm {
-        /// Why.
-        cause: AlarmCause,
-        /// The vendor's number.
-        code: u16,
-    },
-    /// The alarm is gone.
-    AlarmCleared,
-    /// The alarms of the past are forgotten.
-    AlarmHistoryCleared,
-    /// An input word was not refreshed in time and returned to 0.
-    WordExpired {
-        /// The word.
-        word: RowId,
-        /// The row with its time.
-        hold: RowId,
-        /// How long it held, in milliseconds.
-        held_ms: u32,
-    },
-    /// The position register was set to 0.
-    PositionCleared,
-    /// The turns of the encoder count from 0.
-    TurnsCleared,
-    /// All values were stored.
-    Stored,
-    /// A master wears the memory out.
-    Wear {
-        /// The row that it stores; `None` for all at once.
-        row: Option<RowId>,
-        /// How often it was stored.
-        writes: u32,
-        /// In this time; `None` for ever.
-        within: Option<Duration>,
-    },
-    /// All values are as they left the factory.
-    FactoryRestored,
-    /// It answers to another unit address now.
-    Unit {
-        /// The old one.
-        from: u8,
-        /// The new one.
-        to: u8,
-    },
-    /// It talks in another mode now.
-    Mode {
-        /// The old one; `None` where its parameters held codes that stand for nothing.
-        from: Option<Mode>,
-        /// The new one.
-        to: Option<Mode>,
-    },
-    /// It goes to a position.
-    Moves {
-        /// In counts of the drive.
-        to: i64,
-    },
-    /// It goes at a speed by order.
-    Runs {
-        /// In thousandths of a revolution a minute; the sign is the direction.
-        mrpm: i64,
-    },
-    /// It goes at a speed while a level asks for it.
-    Jogs {
-        /// In thousandths of a revolution a minute; the sign is the direction.
-        mrpm: i64,
-    },
-    /// A position segment begins.
-    PositionSegment {
-        /// Its number.
-        number: u16,
-        /// Where to, in counts of the drive.
-        to: i64,
-    },
-    /// A velocity segment begins.
-    VelocitySegment {
-        /// Its number.
-        number: u16,
-        /// In thousandths of a revolution a minute; the sign is the direction.
-        mrpm: i64,
-    },
-    /// A chain goes on.
-    ChainStep {
-        /// Number of the segment so far.
-        from: u16,
-        /// Number of the next one.
-        to: u16,
-        /// The condition that was met last of those that count; `None` where there is none.
-        why: Option<Condition>,
-    },
-    /// A chain has ended at a segment that can't follow.
-    ChainEnded {
-        /// Number of the segment.
-        at: u16,
-        /// Why it can't.
-        why: Ignored,
-    },
-    /// A motion under way goes by another setting from now on.
-    Replans(Replanned),
-    /// A level holds its move back: it slows down to a standstill, and the move is not over.
-    Pauses,
-    /// The move that was held back goes on.
-    Resumes {
-        /// Where to, in counts of the drive.
-        to: i64,
-    },
-    /// It gives up what it was behind its command.
-    DeviationCleared {
-        /// Counts.
-        counts: i64,
-    },
-    /// It slows down to a standstill.
-    Stops,
-    /// Its power stage went off while it moved: it runs out.
-    Coasts,
-    /// It stands.
-    Stands {
-        /// In counts of the drive.
-        at: i64,
-    },
-    /// A limit ends the motion.
-    Limit {
-        /// The positive one?
-        forward: bool,
-        /// One that the drive keeps by itself, without a switch?
-        soft: bool,
-    },
-    /// It runs against a hard stop.
-    Hits {
-        /// In counts of the drive.
-        at: i64,
-    },
-    /// It should be farther from where it is than is allowed.
-    Deviates,
-    /// It looks for its origin.
-    Homes {
-        /// Number of the method.
-        method: i64,
-    },
-    /// It takes a homing step.
-    Seeks {
-        /// Number of the method.
-        method: i64,
-        /// The step.
-        step: HomingStep,
-        /// In thousandths of a revolution a minute; the sign is the direction.
-        mrpm: i64,
-    },
-    /// What a homing step waited for has come.
-    Finds {
-        /// Number of the method.
-        method: i64,
-        /// The step.
-        step: HomingStep,
-        /// In counts of the drive.
-        at: i64,
-    },
-    /// A homing step has come to a limit instead.
-    FindsLimit {
-        /// Number of the method.
-        method: i64,
-        /// The positive one?
-        forward: bool,
-        /// Does it go on from there? Otherwise it waits for its time limit.
-        turns: bool,
-        /// In counts of the drive.
-        at: i64,
-    },
-    /// A homing looks for the index pulse that refines its origin.
-    Refines {
-        /// Number of the method.
-        method: i64,
-        /// In the positive direction?
-        forward: bool,
-    },
-    /// A homing has found the origin.
-    Origin {
-        /// Number of the method.
-        method: i64,
-        /// In counts of the drive, as they were until now.
-        at: i64,
-    },
-    /// A homing is done.
-    Homed {
-        /// Number of the method.
-        method: i64,
-        /// What the position register says now, in counts of the drive.
-        position: i64,
-    },
-    /// A homing ended without an origin.
-    HomingLost {
-        /// Number of the method.
-        method: i64,
-        /// Why.
-        why: HomeEnd,
-    },
-    /// An order has no effect.
-    NoEffect {
-        /// What was ordered.
-        order: Ordered,
-        /// Why nothing comes of it.
-        why: Ignored,
-    },
-    /// Something is wrong with the device from now on, or no longer.
-    DeviceFault {
-        /// What.
-        device_fault: DeviceFault,
-        /// From now on?
-        on: bool,
-    },
-    /// The contact on an input terminal begins to bounce.
-    Bounces {
-        /// Index from 0.
-        index: u8,
-        /// So many times it leaves its level and comes back.
-        times: u16,
-        /// From one edge to the next.
-        every: Duration,
-    },
-    /// An input terminal got another level.
-    Terminal {
-        /// Index from 0.
-        index: u8,
-        /// Carries a signal?
-        signal: bool,
-    },
 }
 
 /// What can be wrong with a device, apart from its line, for as long as somebody says so.
@@ -436,4 +267,111 @@ pub enum DeviceFault {
     Frozen,
     /// The input terminal of this index, from 0, keeps its level.
     Stuck(u8),
+}
+
+/// One line of the text log, whatever names of drives, rows and steps hold: `0.532 unit 1 servo on`.
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.at, one_line(&self.kind.to_string()))
+    }
+}
+
+impl fmt::Display for EventKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Broadcast(it) => it.fmt(f),
+            Self::BroadcastRead { request } => {
+                write!(f, "broadcast {request:?} -> no reply: reads cannot be broadcast")
+            }
+            Self::Foreign { unit, pdu, reply, here } => {
+                let kind = if *reply { "reply from" } else { "request to" };
+                write!(f, "foreign {kind} unit {unit}: {pdu:?}")?;
+                here.as_ref().map_or(Ok(()), |here| write!(f, " -> no reply: {here}"))
+            }
+            Self::BadCrc { frame, got, expected, exception } => {
+                write!(f, "bad CRC {got:?}, expected {expected:?}: {frame:?} -> ")?;
+                match exception {
+                    Some(code) => write!(f, "exception {code:02X}"),
+                    None => f.write_str("no reply"),
+                }
+            }
+            Self::BadAscii { characters, why } => {
+                let characters = String::from_utf8_lossy(characters);
+                write!(f, "bad ASCII frame `:{}`, {why} -> no reply", characters.escape_debug())
+            }
+            Self::Noise { head, len, why } => {
+                let (s, more) = (plural(*len), if *len > head.len() { " ..." } else { "" });
+                write!(f, "noise, {len} byte{s}, {why}: {head:?}{more} -> no reply")
+            }
+            Self::LineSettings { mode } => write!(f, "line settings changed to {mode}"),
+            Self::PortSettings { baud, stop_bits, line, fits, passes } => {
+                let why = match passes {
+                    _ if *fits => "they match",
+                    false => "nothing passes until they match",
+                    true if *baud == line.baud => "most receivers accept that",
+                    true => "a real line would garble every byte, this pseudo-terminal does not",
+                };
+                let s = plural((*stop_bits).into());
+                write!(f, "master port set to {baud} baud, {stop_bits} stop bit{s}; ")?;
+                write!(f, "line set to {line}: {why}")
+            }
+            Self::StreamClosed { why } => write!(f, "stream closed: {why}"),
+            Self::Fault(hit) => hit.fmt(f),
+            Self::Step(Remark { step, outcome, what }) => match outcome {
+                Outcome::Begins => write!(f, "step {step}"),
+                Outcome::Passed => write!(f, "step {step} passed"),
+                Outcome::Failed => write!(f, "step {step} failed: {what}"),
+            },
+            Self::RepeatedCommand { unit, action, count, .. } => {
+                let name = action.name();
+                write!(f, "unit {unit} {name} repeated; the first reply never arrived (#{count})")
+            }
+            Self::Transaction(it) => it.fmt(f),
+            Self::Drive { unit, line, event, .. } => {
+                write!(f, "unit {unit} {event}")?;
+                match (event, line) {
+                    (DriveEvent::ModeChanged { to: Some(to), .. }, Some(line)) if to != line => {
+                        write!(f, "; unreachable: the line is set to {line}")
+                    }
+                    _ => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+impl fmt::Display for Here {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoPower => f.write_str("the drive has no power"),
+            Self::SetTo(Some(mode)) => write!(f, "the drive is set to {mode}"),
+            Self::SetTo(None) => {
+                f.write_str("the drive is set to an undefined baud or format code")
+            }
+            Self::Units(units) => {
+                let units = (0..=u8::MAX).filter(|unit| *unit != BROADCAST && units.has(*unit));
+                let units: Vec<_> = units.map(|unit| unit.to_string()).collect();
+                match units.as_slice() {
+                    [only] => write!(f, "the only unit on this line is {only}"),
+                    _ => write!(f, "the units on this line are {}", units.join(", ")),
+                }
+            }
+        }
+    }
+}
+
+fn sentence<S: Serializer>(why: &impl fmt::Display, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(why)
+}
+
+fn lossy_text<S: Serializer>(frame: &Frame, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&String::from_utf8_lossy(frame))
+}
+
+fn on_off(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }

@@ -1,6 +1,7 @@
 //! Serial settings as people write them: `9600-8N2`.
 
 use crate::time::Duration;
+use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
@@ -103,6 +104,31 @@ impl fmt::Display for Mode {
         write!(f, "{} {}", self.settings, if self.ascii { "ASCII" } else { "RTU" })
     }
 }
+
+/// As people write it.
+macro_rules! serialize_as_text {
+    ($type:ident, $pattern:literal) => {
+        impl Serialize for $type {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.collect_str(self)
+            }
+        }
+
+        #[cfg(feature = "cli")]
+        impl schemars::JsonSchema for $type {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                schemars::json_schema!({ "type": "string", "pattern": $pattern })
+            }
+        }
+    };
+}
+
+serialize_as_text!(Settings, "^[0-9]+-[78][NEO][12]$");
+serialize_as_text!(Mode, "^[0-9]+-[78][NEO][12] (RTU|ASCII)$");
 
 impl FromStr for Format {
     type Err = String;

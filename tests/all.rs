@@ -15,6 +15,8 @@ mod line;
 mod line_behaviour;
 #[cfg(feature = "cli")]
 mod live;
+#[cfg(feature = "cli")]
+mod log;
 mod no_effect;
 mod problems;
 mod properties;

@@ -90,6 +90,34 @@ fn orders_without_effect_allocate_nothing() {
     assert_eq!(counted.count_total, 0);
 }
 
+/// A log costs whoever serves a line no heap for each event: text is made by the thread that writes it. Its queue
+/// grows, if at all, by doubling.
+#[cfg(feature = "cli")]
+#[test]
+fn a_log_allocates_nothing_for_an_event() {
+    let mut rig = crate::kit::rig("hcfa-x", &[], &DeviceSpec::default());
+    rig.send(&rtu::encode(1, &[3, 3, 4, 0, 1]));
+    let event = rig.events().last().expect("a transaction").clone();
+    let mut logger = drivemu::server::Logger::to_file("/dev/null".as_ref()).expect("a device");
+    let mut rounds = || (0..5000).for_each(|_| logger.log(&event, "line"));
+    rounds();
+    let counted = allocation_counter::measure(rounds);
+    assert!(counted.count_total < 16, "{}", counted.count_total);
+}
+
+/// Where nobody looks at events there are none.
+#[test]
+fn events_that_nobody_wants_are_not_there() {
+    let rig = crate::kit::rig("hcfa-x", &[], &DeviceSpec::default());
+    let mut bus = rig.fresh_bus();
+    while bus.poll_output().is_some() {}
+    bus.observe(false);
+    let link = bus.open(rig.wire().framing(1.0));
+    bus.receive(Instant::from_millis(2000), link, &rtu::encode(1, &[3, 3, 4, 0, 1]));
+    let outputs: Vec<_> = std::iter::from_fn(|| bus.poll_output()).collect();
+    assert!(matches!(outputs[..], [drivemu::bus::Output::Transmit { .. }]), "{outputs:?}");
+}
+
 fn transact(bus: &mut Bus, link: LinkId, now: Instant, frame: &[u8]) {
     bus.receive(now, link, frame);
     let mut outputs = 0;

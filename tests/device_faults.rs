@@ -18,7 +18,7 @@ fn drive(model: &str) -> Rig {
 #[cfg(feature = "cli")]
 #[test]
 fn each_device_fault_as_json() {
-    use drivemu::log::json::object;
+    use crate::kit::object;
     use serde_json::{Value, json};
     let all = [
         DeviceFault::Cause(AlarmCause::OverVoltage),
@@ -42,7 +42,7 @@ fn each_device_fault_as_json() {
             rig.command(Command::Drive(FIRST, DriveOrder::DeviceFault { device_fault, on }))
                 .expect("it can be");
         }
-        let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
+        let told = rig.events().iter().map(object);
         let told: Vec<Value> = told.filter(|it| it["event"] == "device_fault").collect();
         let [begins, ends] = told.as_slice() else { panic!("{told:?}") };
         assert_eq!((&begins["on"], &ends["on"]), (&json!(true), &json!(false)));
@@ -55,7 +55,7 @@ fn each_device_fault_as_json() {
     rig.command(Command::Drive(FIRST, DriveOrder::Bounce { index: 2, times: 3, every }))
         .expect("a terminal");
     rig.command(Command::Drive(FIRST, DriveOrder::Power(false))).expect("it has power");
-    let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
+    let told = rig.events().iter().map(object);
     let told: Vec<Value> = told.collect();
     let bounces = told.iter().find(|it| it["event"] == "bouncing").expect("told");
     assert_eq!(

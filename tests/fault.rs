@@ -14,7 +14,7 @@ mod turns;
 
 use crate::kit::{rig, rig_of};
 use drivemu::bench::DeviceSpec;
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::testkit::Rig;
 use drivemu::wire::rtu;
 
@@ -48,8 +48,8 @@ fn frame(pdu: &[u8]) -> Vec<u8> {
 
 /// What rules did, in order.
 fn effects(rig: &Rig) -> Vec<&'static str> {
-    let effect = |event: &drivemu::event::Event| match &event.what {
-        What::Fault(hit) => Some(hit.effect.name()),
+    let effect = |event: &drivemu::event::Event| match &event.kind {
+        EventKind::Fault(hit) => Some(hit.effect.name()),
         _ => None,
     };
     rig.events().iter().filter_map(effect).collect()

@@ -3,7 +3,7 @@
 use crate::expect::{files, read, root};
 use drivemu::bench::{BenchLine, BuiltinLibrary, Device, DeviceSpec, Library, LineBuilder, parse};
 use drivemu::bus::Output;
-use drivemu::event::{Event, What};
+use drivemu::event::{Event, EventKind};
 use drivemu::model::builtin::Builtin;
 use drivemu::model::{Choices, Model, load};
 use drivemu::testkit::{Rig, transcript};
@@ -43,11 +43,17 @@ impl Conversation {
 
     /// Plays it with every model; the message says where and what.
     pub fn play(&self) -> Result<(), String> {
-        self.texts.iter().try_for_each(|text| self.play_text(text))
+        self.texts.iter().try_for_each(|text| self.play_text(text).map(|_| ()))
+    }
+
+    /// Plays it with every model, and gives back the lines as they are then.
+    #[cfg(feature = "cli")]
+    pub fn rigs(&self) -> impl Iterator<Item = Result<Rig, String>> {
+        self.texts.iter().map(|text| self.play_text(text))
     }
 
     /// Plays `text`, which is a variation of this conversation.
-    pub fn play_text(&self, text: &str) -> Result<(), String> {
+    pub fn play_text(&self, text: &str) -> Result<Rig, String> {
         transcript::run(text, &Files).map_err(|failure| {
             let model = text.lines().find(|line| line.starts_with("model ")).unwrap_or_default();
             format!("{}:{}: ({model}) {}", self.path, failure.line, failure.what)
@@ -150,8 +156,8 @@ pub fn last_refusal(rig: &Rig) -> Option<Refusal> {
 }
 
 fn transaction(event: &Event) -> Option<Option<Refusal>> {
-    match &event.what {
-        What::Transaction(it) => Some(it.refusal),
+    match &event.kind {
+        EventKind::Transaction(it) => Some(it.refusal),
         _ => None,
     }
 }
@@ -175,4 +181,10 @@ pub fn drain(bus: &mut drivemu::bus::Bus) -> Drained {
         }
     }
     drained
+}
+
+/// What programs read of an event.
+#[cfg(feature = "cli")]
+pub fn object(event: &Event) -> serde_json::Value {
+    serde_json::from_str(&drivemu::log::json(event, "line")).expect("an object")
 }

@@ -5,7 +5,7 @@ use crate::expect::{read, root};
 use crate::kit::{MODELS, rig_of, text_of};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Command, DriveOrder};
-use drivemu::event::{Change, DriveId, What};
+use drivemu::event::{DriveEvent, DriveId, EventKind};
 use drivemu::model::{RowId, Wiring};
 use drivemu::testkit::{Rig, to_hex};
 use drivemu::vocabulary::{Action, Input, Output};
@@ -74,7 +74,7 @@ fn each_order_does_something_or_says_why_not() {
                 let before = rig.events().len();
                 give(&mut rig, *order);
                 let all = drive_events(&rig, before);
-                let why = all.iter().filter(|it| matches!(it, Change::NoEffect { .. })).count();
+                let why = all.iter().filter(|it| matches!(it, DriveEvent::NoEffect { .. })).count();
                 if all.is_empty() || why > 1 {
                     let log = rig.log_from(before.saturating_sub(3));
                     silent.push(format!("{model}, {situation:?}, {order:?}:\n{log}"));
@@ -88,7 +88,7 @@ fn each_order_does_something_or_says_why_not() {
                         write(&mut rig, *row, raw);
                     }
                     let again = drive_events(&rig, before);
-                    if again.iter().any(|it| matches!(it, Change::NoEffect { .. })) {
+                    if again.iter().any(|it| matches!(it, DriveEvent::NoEffect { .. })) {
                         let log = rig.log_from(before.saturating_sub(3));
                         silent.push(format!("AGAIN {model}, {situation:?}, {order:?}:\n{log}"));
                     }
@@ -109,7 +109,7 @@ fn the_log_tells_programs_what_and_why() {
     let objects = |model: &str, requests: &[&str]| -> Vec<serde_json::Value> {
         let mut rig = rig_of(text_of(model), &[], &DeviceSpec::default());
         requests.iter().for_each(|request| drop(rig.ask(request)));
-        let object = |event| drivemu::log::json::object(event, "line", rig.bus());
+        let object = |event| crate::kit::object(event);
         let all = rig.events().iter().map(object);
         all.filter(|it| it["event"] == "no_effect").collect()
     };
@@ -364,13 +364,13 @@ fn write(rig: &mut Rig, row: RowId, value: u16) {
 }
 
 /// What the drive has told from event number `first` on, apart from levels of its terminals.
-fn drive_events(rig: &Rig, first: usize) -> Vec<Change> {
-    let change = |what: &What| match what {
-        What::Drive { change: Change::Terminal { .. }, .. } => None,
-        What::Drive { change, .. } => Some(*change),
+fn drive_events(rig: &Rig, first: usize) -> Vec<DriveEvent> {
+    let change = |what: &EventKind| match what {
+        EventKind::Drive { event: DriveEvent::Terminal { .. }, .. } => None,
+        EventKind::Drive { event: change, .. } => Some(change.clone()),
         _ => None,
     };
-    rig.events()[first..].iter().filter_map(|event| change(&event.what)).collect()
+    rig.events()[first..].iter().filter_map(|event| change(&event.kind)).collect()
 }
 
 fn wiring(rig: &Rig) -> &Wiring {

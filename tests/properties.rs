@@ -6,7 +6,7 @@ use crate::kit::{MODELS, drain, line_of, rig, text_of};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Bus, Command, DriveOrder, LinkId};
 use drivemu::drive::View;
-use drivemu::event::{Change, DriveId, Event, What};
+use drivemu::event::{DriveEvent, DriveId, Event, EventKind};
 use drivemu::line::Framing;
 use drivemu::model::{Access, Layer, Located};
 use drivemu::testkit::Rig;
@@ -165,7 +165,7 @@ proptest! {
                 prop_assert!(rig.drive().bank() == &before.0, "{}", rig.log());
                 let new = &rig.events()[before.1..];
                 // A word of which nothing is enabled says so when it is read.
-                let told = |event: &&Event| !matches!(event.what, What::Drive { change: Change::NoEffect { .. }, .. });
+                let told = |event: &&Event| !matches!(event.kind, EventKind::Drive { event: DriveEvent::NoEffect { .. }, .. });
                 prop_assert_eq!(new.iter().filter(told).count(), 1, "{}", rig.log());
             } else if let [6, high, low, a, b] = *request {
                 let address = u16::from_be_bytes([high, low]);
@@ -335,17 +335,17 @@ fn the_slices_have_something_to_cut() {
         events
             .iter()
             .filter(|it| it.at == Instant::from_millis(ms))
-            .map(|it| it.what.clone())
+            .map(|it| it.kind.clone())
             .collect::<Vec<_>>()
     };
-    assert!(matches!(at(23)[..], [What::BadCrc { .. }]), "silence ends a frame");
+    assert!(matches!(at(23)[..], [EventKind::BadCrc { .. }]), "silence ends a frame");
     assert!(
-        matches!(at(1000)[..], [What::Drive { .. }, What::Drive { .. }]),
+        matches!(at(1000)[..], [EventKind::Drive { .. }, EventKind::Drive { .. }]),
         "ready, and so servo on"
     );
     assert!(
-        matches!(at(5002)[..], [What::Drive { .. }, What::Drive { .. }]),
+        matches!(at(5002)[..], [EventKind::Drive { .. }, EventKind::Drive { .. }]),
         "word gone, and so servo off"
     );
-    assert!(matches!(at(9000)[..], [What::Drive { .. }]), "ready again");
+    assert!(matches!(at(9000)[..], [EventKind::Drive { .. }]), "ready again");
 }

@@ -238,10 +238,10 @@ fn a_step_names_its_drive() {
 #[cfg(feature = "cli")]
 #[test]
 fn steps_as_json() {
-    use drivemu::log::json::object;
+    use crate::kit::object;
     use serde_json::json;
     let rig = play("steps: [{name: a step, expect: [{signal: alarm, is: on}]}]");
-    let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
+    let told = rig.events().iter().map(object);
     let told: Vec<_> = told.filter(|it| it["event"] == "step").collect();
     assert_eq!((&told[0]["step"], &told[0]["outcome"]), (&json!("a step"), &json!("started")));
     assert_eq!(told[1]["outcome"], "failed");

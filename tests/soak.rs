@@ -1,7 +1,7 @@
 //! A thousand soak tests, and bugs that they must find.
 
 use crate::expect::{read, root};
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::medium::FaultKind;
 use drivemu::model::{Choices, load};
 use drivemu::testkit::soak::{InjectedBug, Options, Report, SEED, run, seeds};
@@ -19,11 +19,11 @@ const SEEDS: u64 = 1_000;
 /// What happens in a thousand soak tests at least, besides every kind of fault, or they would hold for drives that do nothing.
 #[rustfmt::skip]
 const HAPPENS: [&str; 30] = [
-    "BadAscii", "BadCrc", "Broadcast", "BroadcastRead", "Foreign", "Lost", "Moved", "Noise", "Refusal",
-    "RepeatedCommand", "Transaction", "Drive Alarm", "Drive AlarmCleared", "Drive Coasts", "Drive Deviates",
-    "Drive FactoryRestored", "Drive Finds", "Drive Hits", "Drive Homed", "Drive HomingLost", "Drive Jogs",
-    "Drive Limit", "Drive Mode", "Drive Moves", "Drive PositionCleared", "Drive PositionSegment", "Drive Runs",
-    "Drive Stored", "Drive Unit", "Drive WordExpired",
+    "BadAscii", "BadCrc", "Broadcast", "BroadcastRead", "Foreign", "StreamClosed", "LineSettings", "Noise", "Refusal",
+    "RepeatedCommand", "Transaction", "Drive Alarm", "Drive AlarmCleared", "Drive Coasting", "Drive PositionDeviation",
+    "Drive FactoryRestored", "Drive HomingFound", "Drive HardStop", "Drive HomingComplete", "Drive HomingAborted", "Drive Jogging",
+    "Drive Limit", "Drive ModeChanged", "Drive Moving", "Drive PositionCleared", "Drive PositionSegment", "Drive Running",
+    "Drive Stored", "Drive UnitChanged", "Drive WordExpired",
 ];
 
 /// The embedded models and the made-up one.
@@ -47,7 +47,7 @@ fn a_thousand_runs_pass() {
         let mut seen = BTreeMap::<String, u64>::new();
         while let Some(seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed) as usize) {
             let report = passed(*seed, &OPTIONS);
-            report.events.iter().for_each(|it| *seen.entry(kind(&it.what)).or_default() += 1);
+            report.events.iter().for_each(|it| *seen.entry(kind(&it.kind)).or_default() += 1);
         }
         seen
     };
@@ -66,12 +66,12 @@ fn a_thousand_runs_pass() {
     assert!(seeds.len() < SEEDS as usize || unseen.is_empty(), "{unseen:?} never happen: {seen:?}");
 }
 
-/// What happened, without its numbers: `Drive Moves`, `Fault lose_reply`.
-fn kind(what: &What) -> String {
+/// What happened, without its numbers: `Drive Moving`, `Fault lose_reply`.
+fn kind(what: &EventKind) -> String {
     let text = match what {
-        What::Drive { change, .. } => format!("Drive {change:?}"),
-        What::Fault(hit) => format!("Fault {}", hit.effect.name()),
-        What::Transaction(it) if it.refusal.is_some() => "Refusal".into(),
+        EventKind::Drive { event: change, .. } => format!("Drive {change:?}"),
+        EventKind::Fault(hit) => format!("Fault {}", hit.effect.name()),
+        EventKind::Transaction(it) if it.refusal.is_some() => "Refusal".into(),
         what => format!("{what:?}"),
     };
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|it| !it.is_empty());

@@ -3,7 +3,7 @@
 use crate::kit::{Files, MODELS, bench_line, drain, rig, rig_of};
 use drivemu::bench::{self, DeviceSpec, Saved};
 use drivemu::bus::{Command, DriveOrder, Output};
-use drivemu::event::{Change, DriveId, What};
+use drivemu::event::{DriveEvent, DriveId, EventKind};
 use drivemu::testkit::{Rig, hex};
 use drivemu::time::{Duration, Instant};
 use drivemu::vocabulary::AlarmCause;
@@ -294,10 +294,10 @@ fn storing_all_in_a_cycle_is_told_too() {
         told(&rig),
         ["unit 1 excessive EEPROM writes: all parameters stored 100 times within 60 s"]
     );
-    let last = rig.events().last().expect("an event").what.clone();
+    let last = rig.events().last().expect("an event").kind.clone();
     let within = Some(Duration::from_secs(60));
-    let wear = Change::Wear { row: None, writes: 100, within };
-    assert!(matches!(last, What::Drive { change, .. } if change == wear));
+    let wear = DriveEvent::ExcessiveWrites { row: None, writes: 100, within };
+    assert!(matches!(last, EventKind::Drive { event: change, .. } if change == wear));
 }
 
 #[cfg(feature = "cli")]
@@ -305,7 +305,7 @@ fn storing_all_in_a_cycle_is_told_too() {
 fn wear_for_programs() {
     let mut rig = servo(&DeviceSpec::default());
     (0..100).for_each(|_| assert!(!rig.ask(STORE).is_empty()));
-    let object = drivemu::log::json::object(rig.events().last().expect("one"), "line", rig.bus());
+    let object = crate::kit::object(rig.events().last().expect("one"));
     assert_eq!(object["event"], "excessive_writes");
     assert_eq!((&object["row"], &object["writes"]), (&"P03.04".into(), &100.into()));
     assert_eq!(object["within_s"], 60);

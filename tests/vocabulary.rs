@@ -12,7 +12,7 @@ mod thresholds;
 use crate::kit::rig_of;
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Command, DriveOrder};
-use drivemu::event::{Change, DriveId, What};
+use drivemu::event::{DriveEvent, DriveId, EventKind, MilliRpm};
 use drivemu::model::{RowId, Shows, Wiring};
 use drivemu::motion::Machine;
 use drivemu::testkit::{Rig, to_hex};
@@ -285,29 +285,29 @@ fn each_action_acts() {
         give(&mut rig, action);
         let want = match action {
             Action::QuickStop => {
-                Change::Stands { at: rig.drive().quantity(Quantity::PositionActual) }
+                DriveEvent::Stopped { at: rig.drive().quantity(Quantity::PositionActual) }
             }
-            Action::Stop => Change::Stops,
+            Action::Stop => DriveEvent::Stopping,
             Action::HomeStart => {
                 let edge = SignalEdge { signal: Input::HomeSwitch, on: true };
                 let (forward, pace, until) = (true, Pace::Fast, Until::Edge(edge));
                 let step = HomingStep { forward, pace, until, then: Then::Ramp };
-                Change::Seeks { method: 0, step, mrpm: 120_000 }
+                DriveEvent::HomingMoving { method: 0, step, rpm: MilliRpm(120_000) }
             }
-            Action::MoveStart => Change::Moves { to: 200_005 },
-            Action::RunStart => Change::Runs { mrpm: 60_000 },
-            Action::Enable => Change::Enabled(true),
-            Action::Release => Change::Enabled(false),
-            Action::AlarmReset | Action::EncoderReset => Change::AlarmCleared,
-            Action::ClearAlarmHistory => Change::AlarmHistoryCleared,
-            Action::ClearPosition => Change::PositionCleared,
-            Action::ClearTurns => Change::TurnsCleared,
-            Action::StoreAll => Change::Stored,
-            Action::RestoreFactory => Change::FactoryRestored,
-            Action::PowerCycle => Change::PoweredOn,
+            Action::MoveStart => DriveEvent::Moving { to: 200_005 },
+            Action::RunStart => DriveEvent::Running { rpm: MilliRpm(60_000) },
+            Action::Enable => DriveEvent::Servo { on: true },
+            Action::Release => DriveEvent::Servo { on: false },
+            Action::AlarmReset | Action::EncoderReset => DriveEvent::AlarmCleared,
+            Action::ClearAlarmHistory => DriveEvent::AlarmHistoryCleared,
+            Action::ClearPosition => DriveEvent::PositionCleared,
+            Action::ClearTurns => DriveEvent::TurnsCleared,
+            Action::StoreAll => DriveEvent::Stored,
+            Action::RestoreFactory => DriveEvent::FactoryRestored,
+            Action::PowerCycle => DriveEvent::PowerOn,
         };
-        let last = rig.events().last().map(|event| event.what.clone());
-        let told = matches!(last, Some(What::Drive { change, .. }) if change == want);
+        let last = rig.events().last().map(|event| event.kind.clone());
+        let told = matches!(last, Some(EventKind::Drive { event: change, .. }) if change == want);
         assert!(told, "`{}`\n{}", action.name(), rig.log());
     }
 }

@@ -107,9 +107,14 @@ impl Bank {
 
     /// Which word of `row` stands at the lower address right now.
     pub fn order(&self, model: &Model, row: &Row) -> RegisterOrder {
-        match (row.order, &model.line.word_order) {
-            (Some(order), _) | (None, &WordOrder::Fixed(order)) => order,
-            (None, WordOrder::Row { row, codes }) => {
+        row.order.unwrap_or_else(|| self.common_order(model))
+    }
+
+    /// The same for rows that say nothing about it.
+    pub fn common_order(&self, model: &Model) -> RegisterOrder {
+        match &model.line.word_order {
+            WordOrder::Fixed(order) => *order,
+            WordOrder::Row { row, codes } => {
                 codes.get(&self.value(model, *row)).copied().unwrap_or(RegisterOrder::HighFirst)
             }
         }
@@ -139,10 +144,4 @@ pub(crate) fn with_word(row: &Row, order: RegisterOrder, raw: u32, word: u8, val
 
 fn is_high(row: &Row, order: RegisterOrder, word: u8) -> bool {
     row.kind.words() == 2 && (order == RegisterOrder::HighFirst) == (word == 0)
-}
-
-/// The number that the two words of a pair stand for, lower address first.
-pub(crate) fn row_value(row: &Row, order: RegisterOrder, words: [u16; 2]) -> i64 {
-    let raw = with_word(row, order, 0, 0, words[0]);
-    row.kind.value(with_word(row, order, raw, 1, words[1]))
 }

@@ -2,7 +2,7 @@
 
 use super::Bus;
 use crate::drive::Drive;
-use crate::event::{DeviceFault, DriveId, Remark, RemarkId, What};
+use crate::event::{DeviceFault, DriveId, EventKind, Remark};
 use crate::medium::{FaultRule, LineBehaviour};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{AlarmCause, Named};
@@ -154,7 +154,7 @@ impl Bus {
             LineCommand::AddFault(rule) => return self.add_fault(rule),
             LineCommand::RemoveFault(name) => return self.remove_fault(name),
             LineCommand::SetBehaviour(behaviour) => self.medium.set_behaviour(self.now, behaviour),
-            LineCommand::Tell(remark) => self.remember(remark),
+            LineCommand::Tell(remark) => self.emit(EventKind::Step(remark)),
         }
         Ok(Reply::Done)
     }
@@ -199,16 +199,6 @@ impl Bus {
             DriveOrder::Power(false) => self.switch(id, Drive::power_off),
         }
         Ok(Reply::Done)
-    }
-
-    fn remember(&mut self, remark: Remark) {
-        // A step that repeats says the same again and again.
-        let known = self.remarks.iter().position(|it| *it == remark);
-        let number = known.unwrap_or_else(|| {
-            self.remarks.push(remark);
-            self.remarks.len() - 1
-        });
-        self.emit(What::Step(RemarkId(number as u32)));
     }
 
     fn add_fault(&mut self, rule: FaultRule) -> Result<Reply, CommandError> {

@@ -1,7 +1,7 @@
 //! The links of a line: how each tells frames apart, and what it has received.
 
 use super::stations::Stations;
-use crate::event::What;
+use crate::event::EventKind;
 use crate::line::{Foreign, Framing, Line, LineEvent};
 use crate::medium::LinkId;
 use crate::time::Instant;
@@ -73,7 +73,7 @@ impl Links {
     pub fn next(&mut self, now: Instant, link: LinkId, stations: &Stations) -> Option<LineInput> {
         let Link { line, is_tcp } = self.by_id.get_mut(&link)?;
         let event = line.next(now, stations.units())?;
-        Some(LineInput::of(event, *is_tcp, stations.sole().is_some()))
+        Some(LineInput::of(event, *is_tcp, stations))
     }
 }
 
@@ -84,19 +84,19 @@ pub(super) enum LineInput {
     /// To every drive of the line.
     Broadcast(Pdu),
     /// A master's request to somebody who is not here.
-    ForeignRequest(What),
+    ForeignRequest(EventKind),
     /// A frame with a wrong checksum.
     BadCrc { frame: Frame, crc: BadCrc },
     /// Nothing that anybody answers.
-    Other(What),
+    Other(EventKind),
     /// The stream can't be followed any more.
-    Lost(What),
+    Lost(EventKind),
 }
 
 impl LineInput {
-    /// From a line that is Modbus TCP, or not, and whose only drive is there, or not.
-    fn of(event: LineEvent<'_>, is_tcp: bool, is_sole: bool) -> Self {
-        let whoever = is_tcp && is_sole;
+    /// From a line that is Modbus TCP, or not, with these stations.
+    fn of(event: LineEvent<'_>, is_tcp: bool, stations: &Stations) -> Self {
+        let whoever = is_tcp && stations.sole().is_some();
         match event {
             // Modbus TCP lets a client say 0 or 255 for "whoever is there" (messaging on TCP/IP, 4.4.1.2).
             LineEvent::Request(adu) if adu.unit == BROADCAST && !whoever => {
@@ -109,18 +109,21 @@ impl LineInput {
                 Self::request(adu, is_tcp)
             }
             LineEvent::Request(adu) => Self::request(adu, is_tcp),
-            LineEvent::Foreign(Foreign::Request(adu)) => Self::ForeignRequest(foreign(adu, false)),
-            LineEvent::Foreign(Foreign::Response(adu)) => Self::Other(foreign(adu, true)),
+            LineEvent::Foreign(Foreign::Request(adu)) => {
+                let (pdu, here) = (Pdu::from_slice(adu.pdu), Some(stations.here(adu.unit)));
+                Self::ForeignRequest(EventKind::Foreign { unit: adu.unit, pdu, reply: false, here })
+            }
+            LineEvent::Foreign(Foreign::Response(adu)) => Self::Other(foreign_reply(adu)),
             LineEvent::BadCrc { bytes, crc } => {
                 Self::BadCrc { frame: Frame::from_slice(bytes), crc }
             }
             LineEvent::BadAscii { bytes, why } => {
-                Self::Other(What::BadAscii { characters: Frame::from_slice(bytes), why })
+                Self::Other(EventKind::BadAscii { characters: Frame::from_slice(bytes), why })
             }
             LineEvent::Noise { bytes, len, why } => {
-                Self::Other(What::Noise { head: Inline::from_slice(bytes), len, why })
+                Self::Other(EventKind::Noise { head: Inline::from_slice(bytes), len, why })
             }
-            LineEvent::Lost(why) => Self::Lost(What::Lost(why)),
+            LineEvent::Lost(why) => Self::Lost(EventKind::StreamClosed { why }),
         }
     }
 
@@ -128,12 +131,13 @@ impl LineInput {
     /// second drive at our address. Answering it would never end. A TCP client sends nothing but requests.
     fn request(adu: Adu<'_>, is_tcp: bool) -> Self {
         match !is_tcp && adu.function() & EXCEPTION != 0 {
-            true => Self::Other(foreign(adu, true)),
+            true => Self::Other(foreign_reply(adu)),
             false => Self::Request { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu) },
         }
     }
 }
 
-fn foreign(adu: Adu<'_>, answer: bool) -> What {
-    What::Foreign { unit: adu.unit, pdu: Pdu::from_slice(adu.pdu), answer }
+fn foreign_reply(adu: Adu<'_>) -> EventKind {
+    let (unit, pdu) = (adu.unit, Pdu::from_slice(adu.pdu));
+    EventKind::Foreign { unit, pdu, reply: true, here: None }
 }

@@ -20,7 +20,7 @@ pub use output::{Output, Wake, WakeReason};
 pub use request_counts::RequestCounts;
 
 use crate::drive::{Drive, DriveEffect, Setup, View};
-use crate::event::{Change, DriveId, Event, PortSettings, Remark, RemarkId, Transaction, What};
+use crate::event::{Broadcast, DriveId, Event, EventKind, PortSettings, Transaction};
 use crate::line::{Framing, Line};
 use crate::medium::{
     DriveReply, FaultRules, LineBehaviour, MasterRequest, Medium, Passage, PendingHit,
@@ -47,8 +47,6 @@ pub struct Bus {
     now: Instant,
     links: Links,
     stations: Stations,
-    /// What was told of steps.
-    remarks: Vec<Remark>,
     /// How the line talks, if it is a serial one; then drives that talk otherwise are deaf. The medium follows once
     /// what is on its way has left.
     mode: Option<Mode>,
@@ -120,9 +118,7 @@ impl Bus {
     /// answer.
     pub fn hang_up(&mut self, now: Instant, link: LinkId) {
         self.advance_to(now);
-        if let Some(silence) = self.silence_at(link) {
-            self.listen(link, silence);
-        }
+        self.silence_at(link).into_iter().for_each(|silence| self.listen(link, silence));
         self.close(link);
     }
 
@@ -171,6 +167,11 @@ impl Bus {
         self.repeat_detector.repeated(id)
     }
 
+    /// Should it give events as outputs? It does, unless it is told that nobody looks at them; then none is built.
+    pub fn observe(&mut self, observed: bool) {
+        self.outputs.observe(observed);
+    }
+
     /// The time up to which everything has happened.
     pub fn now(&self) -> Instant {
         self.now
@@ -201,13 +202,13 @@ impl Bus {
         bytes.chunks(CHUNK).for_each(|chunk| self.medium.on_bytes(self.now, link, chunk));
         self.place_transmits();
         let (head, why) = (Inline::from_slice(bytes), NoiseCause::Speed(baud));
-        self.emit(What::Noise { head, len: bytes.len(), why });
+        self.emit(EventKind::Noise { head, len: bytes.len(), why });
     }
 
     /// Tells how the port of a master is set, and whether the line understands it.
     pub fn tell_port(&mut self, now: Instant, port: PortSettings, understood: bool) {
         self.advance_to(now);
-        self.emit(What::Port { port, understood });
+        self.emit(port.event(understood));
     }
 
     /// Lets time pass up to `now`: whatever is due until then happens, each thing at its own instant.
@@ -246,11 +247,6 @@ impl Bus {
         self.wakes.iter()
     }
 
-    /// What was told of a step.
-    pub fn remark(&self, id: RemarkId) -> &Remark {
-        &self.remarks[id.0 as usize]
-    }
-
     /// The next thing that leaves the bus.
     pub fn poll_output(&mut self) -> Option<Output> {
         self.outputs.poll(&mut self.medium)
@@ -287,10 +283,10 @@ impl Bus {
             match input {
                 LineInput::Request { unit, pdu } => self.answer(link, unit, pdu),
                 LineInput::Broadcast(pdu) => self.broadcast(link, pdu),
-                LineInput::ForeignRequest(what) => {
+                LineInput::ForeignRequest(kind) => {
                     self.medium.on_foreign_request(self.now, link);
                     self.place_transmits();
-                    self.emit(what);
+                    self.emit(kind);
                 }
                 LineInput::BadCrc { frame, crc } => self.answer_bad_crc(link, frame, crc),
                 LineInput::Other(what) => self.emit(what),
@@ -320,7 +316,7 @@ impl Bus {
             }
             Passage::Delivered => {
                 let drive = self.stations.drive_mut(id);
-                let (answer, refusal) = match drive.request(now, &request) {
+                let (reply, refusal) = match drive.request(now, &request) {
                     Ok(response) => (response.encode(), None),
                     Err(refusal) => (exception(refusal.code), Some(refusal)),
                 };
@@ -328,17 +324,19 @@ impl Bus {
                 self.stations.count(id, function);
                 // What an answer confirms must be there after a power failure.
                 self.keep(id);
-                let later = self.reply(link, id, unit, &answer, hit.as_mut());
-                let transaction = Transaction { drive: id, unit, request, answer, refusal };
-                self.emit(What::Transaction(transaction));
+                let later = self.reply(link, id, unit, &reply, hit.as_mut());
+                self.emit_with(|bus| {
+                    let (drive, decoder) = (id, bus.drive(id).decoder());
+                    Transaction { drive, unit, decoder, request, reply, refusal }.into()
+                });
                 let arrives = later.map(|later| now + later);
                 repeated = self.repeat_detector.executed(now, id, request, issued, arrives);
             }
         }
-        hit.into_iter().for_each(|hit| self.emit(What::Fault(hit.finish())));
+        hit.into_iter().for_each(|hit| self.emit(EventKind::Fault(hit.finish())));
         self.after_drive(id);
         if let Some((action, count)) = repeated {
-            self.emit(What::RepeatedCommand { drive: id, unit, action, count });
+            self.emit(EventKind::RepeatedCommand { drive: id, unit, action, count });
         }
     }
 
@@ -346,12 +344,12 @@ impl Bus {
     fn broadcast(&mut self, link: LinkId, request: Pdu) {
         let hit = self.on_request(link, Adu { unit: BROADCAST, pdu: &request }, BROADCAST);
         let passage = hit.as_ref().map_or(Passage::Delivered, PendingHit::passage);
-        hit.into_iter().for_each(|hit| self.emit(What::Fault(hit.finish())));
+        hit.into_iter().for_each(|hit| self.emit(EventKind::Fault(hit.finish())));
         if passage == Passage::Lost {
             return;
         }
         if request.first() == Some(&READ) {
-            return self.emit(What::BroadcastRead { request });
+            return self.emit(EventKind::BroadcastRead { request });
         }
         for drive in self.stations.ids() {
             if !self.stations.receives(drive, self.mode) {
@@ -360,7 +358,8 @@ impl Bus {
             let station = self.stations.drive_mut(drive);
             let unit = station.unit();
             let refusal = station.request(self.now, &request).err();
-            self.emit(What::Broadcast { drive, unit, request, refusal });
+            let decoder = station.decoder();
+            self.emit(Broadcast { drive, unit, decoder, request, refusal }.into());
             self.after_drive(drive);
         }
     }
@@ -373,7 +372,7 @@ impl Bus {
             let exception = Exception { function: *function & 0x7F, code };
             self.reply(link, drive, *unit, &Response::Exception(exception).encode(), None);
         }
-        self.emit(What::BadCrc { frame, crc, answered });
+        self.emit(EventKind::bad_crc(frame, crc, answered.map(|(_, code)| code)));
     }
 
     fn on_request(&mut self, link: LinkId, adu: Adu<'_>, unit: u8) -> Option<PendingHit> {
@@ -421,8 +420,16 @@ impl Bus {
         self.outputs.place_transmits(&self.medium);
     }
 
-    fn emit(&mut self, what: What) {
-        self.outputs.push(Output::Event(Event { at: self.now, what }));
+    /// Tells of an event, which is built only if somebody wants to know.
+    fn emit_with(&mut self, kind: impl FnOnce(&Self) -> EventKind) {
+        if self.outputs.is_observed() {
+            let kind = kind(self);
+            self.outputs.push(Output::Event(Event { at: self.now, kind }));
+        }
+    }
+
+    fn emit(&mut self, kind: EventKind) {
+        self.emit_with(|_| kind);
     }
 
     /// Has what a drive has stored kept.
@@ -440,22 +447,21 @@ impl Bus {
         }
         let mut moved = false;
         while let Some(effect) = self.stations.drive_mut(id).poll_effect() {
-            let change = match effect {
-                DriveEffect::Changed(change) => change,
+            let event = match effect {
+                DriveEffect::Told(event) => event,
                 DriveEffect::Woken(timer) => {
                     self.wakes.note(Wake { at: self.now, reason: WakeReason::Drive(id, timer) });
                     continue;
                 }
             };
-            moved |= matches!(
-                change,
-                Change::Unit { .. } | Change::Mode { .. } | Change::PoweredOn | Change::PoweredOff
-            );
-            let unit = self.stations.drive(id).unit();
-            self.emit(What::Drive { drive: id, unit, change });
+            moved |= event.changes_reach();
+            let (unit, line) = (self.drive(id).unit(), self.stations.agreed_mode(self.mode));
+            self.emit(EventKind::Drive { drive: id, unit, line, event });
         }
         if moved {
-            self.follow_drives();
+            // Where all drives of a serial line agree on another mode, the line goes with them.
+            self.mode = self.stations.agreed_mode(self.mode);
+            self.move_line();
             self.stations.readdress(self.mode);
         }
         self.deadlines.set(id, self.stations.drive(id).next_timer());
@@ -472,22 +478,12 @@ impl Bus {
         }
     }
 
-    /// Where all drives of a serial line agree on another mode, the line goes with them: a lone drive takes
-    /// its port along.
-    fn follow_drives(&mut self) {
-        let agreed = self.stations.agreed_mode().filter(|_| self.mode.is_some());
-        if agreed.is_some() && agreed != self.mode {
-            self.mode = agreed;
-            self.move_line();
-        }
-    }
-
     /// Moves the port after its drives, once what is on its way has left.
     fn move_line(&mut self) {
         let Some(mode) = self.mode.filter(|_| self.medium.mode() != self.mode) else { return };
         if !self.medium.is_under_way() {
             self.medium.set_mode(self.mode);
-            self.emit(What::Moved(mode));
+            self.emit(EventKind::LineSettings { mode });
             self.outputs.push(Output::Moved(mode));
         }
     }

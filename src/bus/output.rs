@@ -38,6 +38,8 @@ pub(super) struct OutputQueue {
     queue: VecDeque<PendingOutput>,
     /// Frames of the medium that have their place.
     placed: usize,
+    /// Nobody wants to know of events.
+    is_unobserved: bool,
 }
 
 #[derive(Debug)]
@@ -49,6 +51,15 @@ enum PendingOutput {
 impl OutputQueue {
     pub fn push(&mut self, output: Output) {
         self.queue.push_back(PendingOutput::Other(output));
+    }
+
+    /// Does somebody want to know of events?
+    pub fn is_observed(&self) -> bool {
+        !self.is_unobserved
+    }
+
+    pub fn observe(&mut self, observed: bool) {
+        self.is_unobserved = !observed;
     }
 
     /// Gives the frames that `medium` has let go their places behind what is there.

@@ -2,7 +2,7 @@
 
 use super::RequestCounts;
 use crate::drive::Drive;
-use crate::event::DriveId;
+use crate::event::{DriveId, Here};
 use crate::line::Units;
 use crate::serial::Mode;
 use crate::wire::BROADCAST;
@@ -98,11 +98,25 @@ impl Stations {
         }
     }
 
-    /// The mode in which all of them talk, if they agree.
-    pub fn agreed_mode(&self) -> Option<Mode> {
+    /// The mode of a serial `line` once it has followed its drives: theirs, if they agree on one.
+    pub fn agreed_mode(&self, line: Option<Mode>) -> Option<Mode> {
         let mut modes = self.drives.iter().map(Drive::mode);
-        let first = modes.next()??;
-        modes.all(|mode| mode == Some(first)).then_some(first)
+        let first = modes.next().flatten();
+        let agreed = first.filter(|_| modes.all(|mode| mode == first));
+        line.map(|line| agreed.unwrap_or(line))
+    }
+
+    /// Why nothing replies to a request to `unit`.
+    pub fn here(&self, unit: u8) -> Here {
+        match self.iter().find(|(_, drive)| drive.unit() == unit) {
+            Some((_, drive)) if !drive.is_powered() => Here::NoPower,
+            Some((_, drive)) => Here::SetTo(drive.mode()),
+            None => {
+                let mut units = Units::new();
+                self.iter().for_each(|(_, drive)| units.insert(drive.unit()));
+                Here::Units(units)
+            }
+        }
     }
 
     /// Does `id` receive what is said on a line in `mode`? Modbus TCP has none.

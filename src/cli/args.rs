@@ -166,4 +166,6 @@ pub enum SchemaFormat {
     Model,
     Bench,
     Scenario,
+    /// The lines of `run --format json` and `--log-file`
+    Log,
 }

@@ -55,6 +55,7 @@ pub fn schema(args: &SchemaArgs) -> Result<(), CliError> {
         SchemaFormat::Model => crate::model::raw::schema(),
         SchemaFormat::Scenario => crate::scenario::raw::schema(),
         SchemaFormat::Bench => crate::bench::raw::schema(),
+        SchemaFormat::Log => crate::log::schema(),
     };
     let text = serde_json::to_string_pretty(&schema);
     let text = text.map_err(|error| CliError { code: FAILED, text: error.to_string() })?;

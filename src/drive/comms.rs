@@ -3,7 +3,7 @@
 use super::registers::Registers;
 use super::timer::Timer;
 use crate::behaviour::Watchdog;
-use crate::event::Change;
+use crate::event::DriveEvent;
 use crate::model::{Applies, WireFormat};
 use crate::serial::{Mode, Settings};
 use crate::time::Instant;
@@ -41,12 +41,12 @@ impl Comms {
     }
 
     /// Power comes on: what switches and parameters ask for is in force. Returns the change of a mode that there was before.
-    pub(super) fn power_on(&mut self, registers: &Registers) -> Option<Change> {
+    pub(super) fn power_on(&mut self, registers: &Registers) -> Option<DriveEvent> {
         self.silence.stop();
         self.unit = self.unit_asked_for(registers);
         let mode = self.mode_asked_for(registers);
         let from = std::mem::replace(&mut self.mode, mode);
-        (from.is_some() && from != mode).then_some(Change::Mode { from, to: mode })
+        (from.is_some() && from != mode).then_some(DriveEvent::ModeChanged { from, to: mode })
     }
 
     /// Power goes off.
@@ -55,16 +55,16 @@ impl Comms {
     }
 
     /// Puts a new address, speed or format in force, as far as it does not wait for power-on. Returns what has changed.
-    pub(super) fn follow_settings(&mut self, registers: &Registers) -> [Option<Change>; 2] {
+    pub(super) fn follow_settings(&mut self, registers: &Registers) -> [Option<DriveEvent>; 2] {
         let line = &registers.model().line;
         let waits = |row| registers.model().map.row(row).applies == Some(Applies::PowerOn);
         let mode_waits = waits(line.baud.row) || waits(line.format.row);
         let unit = if waits(line.unit.row) { self.unit } else { self.unit_asked_for(registers) };
         let mode = if mode_waits { self.mode } else { self.mode_asked_for(registers) };
         let from = std::mem::replace(&mut self.unit, unit);
-        let moved = (from != unit).then_some(Change::Unit { from, to: unit });
+        let moved = (from != unit).then_some(DriveEvent::UnitChanged { from, to: unit });
         let from = std::mem::replace(&mut self.mode, mode);
-        [moved, (from != mode).then_some(Change::Mode { from, to: mode })]
+        [moved, (from != mode).then_some(DriveEvent::ModeChanged { from, to: mode })]
     }
 
     /// A master spoke: from `now` on it has the time that a row says to speak again, or for ever.

@@ -4,7 +4,7 @@ use super::device_faults::DeviceFaults;
 use super::effects::EffectQueue;
 use super::registers::Registers;
 use crate::behaviour::PowerStage;
-use crate::event::{Change, Ignored, Ordered};
+use crate::event::{DriveEvent, Ignored, NoEffect, Ordered};
 use crate::model::Model;
 use crate::time::Instant;
 use crate::vocabulary::{Input, Inputs};
@@ -41,6 +41,7 @@ impl<'a> DriveContext<'a> {
 
     /// An order has no effect. What the axis says of the power stage is traced to what keeps that off.
     pub(super) fn ignore(self, out: &mut EffectQueue, order: Ordered, why: Ignored) {
-        out.change(Change::NoEffect { order, why: self.root_of(why) });
+        let (decoder, why) = (self.registers.decoder(), self.root_of(why));
+        out.change(DriveEvent::NoEffect(NoEffect { decoder, order, why }));
     }
 }

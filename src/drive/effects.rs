@@ -1,14 +1,14 @@
 //! What comes out of a drive: one queue of values, in the order in which they came to be.
 
 use super::timer::Timer;
-use crate::event::Change;
+use crate::event::DriveEvent;
 use std::collections::VecDeque;
 
 /// What comes out of a drive, in order.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DriveEffect {
     /// Something has changed, or has no effect.
-    Changed(Change),
+    Told(DriveEvent),
     /// A deadline has woken it.
     Woken(Timer),
 }
@@ -24,8 +24,8 @@ impl EffectQueue {
         Self { effects: VecDeque::with_capacity(8) }
     }
 
-    pub(super) fn change(&mut self, change: Change) {
-        self.effects.push_back(DriveEffect::Changed(change));
+    pub(super) fn change(&mut self, change: DriveEvent) {
+        self.effects.push_back(DriveEffect::Told(change));
     }
 
     pub(super) fn woken(&mut self, timer: Timer) {

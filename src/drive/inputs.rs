@@ -5,7 +5,7 @@ use super::effects::EffectQueue;
 use super::registers::Registers;
 use super::timer::Timer;
 use crate::behaviour::Watchdog;
-use crate::event::Change;
+use crate::event::{DriveEvent, RowName};
 use crate::model::{Model, Monitor, Terminals};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{Input, Inputs, RowId};
@@ -118,7 +118,8 @@ impl InputSignals {
         let free = edges & !self.contacts.stuck;
         for bounce in self.contacts.bounces.iter().filter(|it| it.bit & free != 0) {
             let signal = signals & u32::from(bounce.bit) != 0;
-            out.change(Change::Terminal { index: bounce.index, signal });
+            let terminal = axis.context().registers.terminal_name(bounce.index);
+            out.change(DriveEvent::Terminal { terminal, signal });
         }
         self.contacts.bounces.retain(|bounce| bounce.edges > 0);
     }
@@ -169,7 +170,8 @@ impl InputSignals {
             let (Some(held), Some(rule)) = (watchdog.expired(now), &words.hold) else { continue };
             registers.set(*word, 0);
             let held_ms = u32::try_from(held.as_millis()).unwrap_or(u32::MAX);
-            out.change(Change::WordExpired { word: *word, hold: rule.row, held_ms });
+            let [word, hold] = [*word, rule.row].map(|row| RowName(registers.decoder(), row));
+            out.change(DriveEvent::WordExpired { word, hold, held_ms });
             any = true;
         }
         any

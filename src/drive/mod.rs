@@ -29,7 +29,7 @@ pub use view::View;
 
 use crate::bank::{Bank, Causes, Gate, Kept};
 use crate::behaviour::{CommandControl, LevelControl, PowerControl, PowerStage};
-use crate::event::{Change, DeviceFault, Ignored, Ordered};
+use crate::event::{Decoder, DeviceFault, DeviceFaultChange, DriveEvent, Ignored, Ordered};
 use crate::model::{Model, Shows};
 use crate::motion::first_equal;
 use crate::serial::Mode;
@@ -82,6 +82,11 @@ impl Drive {
     /// The unit of a row. That of a speed may be finer than the model says, where a row decides.
     pub fn unit_of(&self, row: RowId) -> Unit {
         self.parts.registers.unit_of(row)
+    }
+
+    /// How its requests, replies and values read at present, for the events that tell of them.
+    pub fn decoder(&self) -> Decoder {
+        self.parts.registers.decoder()
     }
 
     /// What it keeps over power-off.
@@ -226,7 +231,8 @@ impl Drive {
             return self.parts.ignore(order, Ignored::AlreadySo);
         }
         self.parts.inputs.set_terminal(index, signal);
-        self.parts.effects.change(Change::Terminal { index, signal });
+        let terminal = self.parts.registers.terminal_name(index);
+        self.parts.effects.change(DriveEvent::Terminal { terminal, signal });
         let before = self.parts.inputs.active();
         self.parts.update(Update::Inputs);
         if let Some(why) = acts::why_no_signal(self.at(self.parts.now), index, before) {
@@ -239,7 +245,8 @@ impl Drive {
     /// `every` after the one before; both are above 0. One that bounces already begins anew.
     pub fn bounce_terminal(&mut self, now: Instant, index: u8, times: u16, every: Duration) {
         self.advance_to(now);
-        self.parts.effects.change(Change::Bounces { index, times, every });
+        let terminal = self.parts.registers.terminal_name(index);
+        self.parts.effects.change(DriveEvent::Bouncing { terminal, times, every });
         self.parts.inputs.set_bounce(now, index, times, every);
         self.advance_to(now);
     }
@@ -260,7 +267,9 @@ impl Drive {
             fault => self.parts.faults.has(fault),
         };
         if is_so != on {
-            self.parts.effects.change(Change::DeviceFault { device_fault, on });
+            let (decoder, fault) = (self.decoder(), device_fault);
+            let change = DeviceFaultChange { decoder, fault, on };
+            self.parts.effects.change(DriveEvent::DeviceFault(change));
             self.change_device_fault(device_fault, on);
             self.parts.report_axis(None);
             self.parts.update(Update::Inputs);
@@ -303,7 +312,7 @@ impl Drive {
         if !std::mem::take(&mut self.parts.powered) {
             return;
         }
-        self.parts.effects.change(Change::PoweredOff);
+        self.parts.effects.change(DriveEvent::PowerOff);
         self.parts.power.power_off();
         self.parts.report_power();
         self.parts.inputs.stop_words();
@@ -328,7 +337,7 @@ impl Drive {
             self.parts.inputs.gather(self.parts.axis.at(self.parts.context(self.parts.now)));
         self.parts.inputs.set_active(active);
         let moved = self.parts.comms.power_on(&self.parts.registers);
-        self.parts.effects.change(Change::PoweredOn);
+        self.parts.effects.change(DriveEvent::PowerOn);
         moved.into_iter().for_each(|change| self.parts.effects.change(change));
         self.parts.update(Update::Inputs);
         self.parts.power.advance(self.parts.now);

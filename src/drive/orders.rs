@@ -3,7 +3,7 @@
 use super::parts::{Parts, Update};
 use super::setup::IssuedCommand;
 use crate::bank::WritePlan;
-use crate::event::{Change, Ignored, Ordered};
+use crate::event::{DriveEvent, Ignored, Ordered};
 use crate::model::Reaction;
 use crate::vocabulary::{Action, AlarmCause, HomeStarter, Modifier, Modifiers, RowId};
 
@@ -148,15 +148,15 @@ impl Parts {
             Action::EncoderReset => done = self.power.reset_of(AlarmCause::Encoder),
             Action::ClearAlarmHistory => {
                 self.registers.forget_alarms();
-                self.effects.change(Change::AlarmHistoryCleared);
+                self.effects.change(DriveEvent::AlarmHistoryCleared);
             }
             Action::ClearPosition => {
                 axis.clear_position(cx);
-                out.change(Change::PositionCleared);
+                out.change(DriveEvent::PositionCleared);
             }
             Action::ClearTurns => {
                 axis.clear_turns(cx);
-                out.change(Change::TurnsCleared);
+                out.change(DriveEvent::TurnsCleared);
             }
             Action::StoreAll => self.registers.store_all(self.now, &mut self.effects),
             Action::RestoreFactory => {

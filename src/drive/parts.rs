@@ -16,7 +16,7 @@ use super::setup::{IssuedCommand, Setup};
 use super::timer::TimerOwner;
 use super::view::View;
 use crate::behaviour::{Effect, LevelControl, PowerControl, PowerLevels, PowerStage, Trip};
-use crate::event::{Change, Ignored, Ordered};
+use crate::event::{ChainEnd, DriveEvent, Ignored, Ordered};
 use crate::model::{AlarmStop, Model};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::{Action, AlarmCause, HomeEnd, HomeStarter, Input, Inputs, Named};
@@ -302,7 +302,8 @@ impl Parts {
     fn report_start(&mut self, started: axis::SegmentStart) {
         self.report_axis(started.segment);
         if let Some(at) = started.endless {
-            self.effects.change(Change::ChainEnded { at, why: Ignored::NoMotion });
+            let end = ChainEnd { decoder: self.registers.decoder(), at, why: Ignored::NoMotion };
+            self.effects.change(DriveEvent::ChainEnded(end));
         }
     }
 

@@ -3,7 +3,7 @@
 use super::effects::EffectQueue;
 use super::setup::Setup;
 use crate::bank::{Bank, Kept, OFTEN, SOON, WritePlan, WriteRate, is_worn, word_of};
-use crate::event::Change;
+use crate::event::{Decoder, DriveEvent, RowName, TerminalName};
 use crate::model::{Applies, Choice, Counts, HoldTime, Located, Model, Terminals};
 use crate::time::{Duration, Instant};
 use crate::units::{Dimension, Unit};
@@ -93,24 +93,27 @@ impl Registers {
     /// Stores all rows at once.
     pub(super) fn store_all(&mut self, now: Instant, out: &mut EffectQueue) {
         self.bank.store_all(&self.model);
-        out.change(Change::Stored);
+        out.change(DriveEvent::Stored);
         self.note(now, None, self.bank.saves(), out);
     }
 
     /// Puts all values back as they left the factory, which stores them.
     pub(super) fn restore_factory(&mut self, now: Instant, out: &mut EffectQueue) {
         self.bank.restore_factory(&self.model, self.station);
-        out.change(Change::FactoryRestored);
+        out.change(DriveEvent::FactoryRestored);
         self.note(now, None, self.bank.saves(), out);
     }
 
     fn note(&mut self, now: Instant, row: Option<RowId>, writes: u32, out: &mut EffectQueue) {
         self.unsaved = true;
+        let named = |it: &Self| row.map(|row| RowName(it.decoder(), row));
         if is_worn(writes) {
-            out.change(Change::Wear { row, writes, within: None });
+            let row = named(self);
+            out.change(DriveEvent::ExcessiveWrites { row, writes, within: None });
         }
         if self.write_rate.stored(row, now) {
-            out.change(Change::Wear { row, writes: OFTEN, within: Some(SOON) });
+            let (row, within) = (named(self), Some(SOON));
+            out.change(DriveEvent::ExcessiveWrites { row, writes: OFTEN, within });
         }
     }
 
@@ -179,10 +182,27 @@ impl Registers {
     /// The unit of a row. That of a speed may be finer than the model says, where a row decides.
     pub(super) fn unit_of(&self, row: RowId) -> Unit {
         let unit = self.model.map.row(row).unit;
+        match unit.dimension {
+            Dimension::Speed => Unit { scale: unit.scale * self.speed_factor(), ..unit },
+            _ => unit,
+        }
+    }
+
+    /// What a row makes of the unit of speeds.
+    fn speed_factor(&self) -> f64 {
         let rule = self.model.wiring.axis.speed_unit.as_ref();
-        let rule = rule.filter(|_| unit.dimension == Dimension::Speed);
-        let rpm = rule.and_then(|it| it.decode(self.value(it.row)));
-        Unit { scale: unit.scale * rpm.unwrap_or(1.0), ..unit }
+        rule.and_then(|it| it.decode(self.value(it.row))).unwrap_or(1.0)
+    }
+
+    /// How requests, replies and values read at present, for the events that tell of them.
+    pub(super) fn decoder(&self) -> Decoder {
+        let order = self.bank.common_order(&self.model);
+        Decoder::new(self.model.clone(), order, self.speed_factor())
+    }
+
+    /// The name of an input terminal.
+    pub(super) fn terminal_name(&self, index: u8) -> TerminalName {
+        TerminalName(self.decoder(), index)
     }
 
     /// The value of a row in the base unit of its dimension.

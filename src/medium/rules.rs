@@ -1,5 +1,7 @@
 //! The fault rules of one line, in order: whose turn it is, and what each has done.
 
+#[cfg(feature = "cli")]
+use super::kinds::FaultKind;
 use super::kinds::{FaultEffect, Passage};
 use crate::rng::{Chance, Fork, Rng};
 use crate::time::Instant;
@@ -228,5 +230,38 @@ impl Serialize for FaultHit {
         }
         let Self { rule, unit, effect, hit } = self;
         Fields { rule, kind: effect.name(), unit: *unit, hit: *hit, effect }.serialize(serializer)
+    }
+}
+
+/// What every hit has, and the keys of each kind with the numbers that were drawn.
+#[cfg(feature = "cli")]
+impl schemars::JsonSchema for FaultHit {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "FaultHit".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let kinds: Vec<_> = FaultKind::ALL.iter().map(|kind| kind.name).collect();
+        let number = |about: &str| serde_json::json!({ "type": "integer", "description": about });
+        let mut properties = serde_json::json!({
+            "rule": { "type": "string", "description": "The name of the rule." },
+            "kind": { "enum": kinds, "description": "What it does." },
+            "unit": number("The unit address that was asked, 0 to 255."),
+            "hit": number("How often the rule has acted so far, from 1."),
+        });
+        for key in FaultKind::ALL.iter().flat_map(|kind| kind.keys) {
+            let about = format!("Of this hit: {}.", key.about);
+            properties[key.name] =
+                serde_json::json!({ "type": ["number", "null"], "description": about });
+        }
+        for (name, about) in FaultKind::ALL.iter().flat_map(|kind| kind.reports) {
+            let about = format!("Of this hit: {about}");
+            properties[*name] = serde_json::json!({ "type": "boolean", "description": about });
+        }
+        schemars::json_schema!({
+            "type": "object",
+            "properties": properties,
+            "required": ["rule", "kind", "unit", "hit"],
+        })
     }
 }

@@ -293,6 +293,15 @@ impl RowKind {
         }
     }
 
+    /// The number that the two words of a pair stand for, lower address first.
+    pub fn pair(self, order: super::RegisterOrder, [first, second]: [u16; 2]) -> i64 {
+        let [high, low] = match order {
+            super::RegisterOrder::HighFirst => [first, second],
+            super::RegisterOrder::LowFirst => [second, first],
+        };
+        self.value(u32::from(high) << 16 | u32::from(low))
+    }
+
     /// Lowest and highest value.
     pub fn limits(self) -> (i64, i64) {
         match self {

@@ -3,7 +3,7 @@
 //! Deliberately no text and no decision on when: the log, the ready file and the report have those. A path that leads
 //! to a device, to a FIFO or to our own stdout is written to as it is: nothing there is replaced or removed.
 
-use super::sink::{Open, Sink};
+use super::sink::{Open, Sink, Writable};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::os::fd::AsFd;
@@ -97,7 +97,7 @@ impl Destination {
     ///
     /// # Errors
     /// If a file can't be created. What is wrong with anything else shows later.
-    pub fn stream(&self, room: usize) -> io::Result<Sink> {
+    pub fn stream<T: Writable>(&self, room: usize) -> io::Result<Sink<T>> {
         let open: Open = match self.kind {
             FileKind::File => {
                 let file = File::create(&self.target)?;
@@ -120,7 +120,7 @@ impl Destination {
     /// What the file system says.
     pub fn write(&self, text: &str) -> io::Result<Written> {
         if self.kind != FileKind::File {
-            let mut sink = self.stream(1)?;
+            let mut sink = self.stream::<String>(1)?;
             sink.put(text.into());
             sink.close();
             return Ok(Written::UnderWay(sink));
@@ -163,7 +163,7 @@ pub enum Written {
     /// A regular file, by its identity on the file system.
     File(FileId),
     /// It is on its way to something that is no file.
-    UnderWay(Sink),
+    UnderWay(Sink<String>),
 }
 
 fn own(file: File) -> Open {

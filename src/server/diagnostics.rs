@@ -26,7 +26,7 @@ pub enum Diagnostics {
 const ROOM: usize = 4096;
 
 /// The way to stderr, which a process has only one of; `None` while nobody serves anything.
-static STDERR: Mutex<Option<Sink>> = Mutex::new(None);
+static STDERR: Mutex<Option<Sink<String>>> = Mutex::new(None);
 
 /// Sends diagnostics to stderr from now on.
 pub fn diagnose(diagnostics: Diagnostics) {

@@ -32,14 +32,14 @@ static LAGS: AtomicBool = AtomicBool::new(false);
 
 /// A subscriber to the events of lines.
 pub trait Subscriber: fmt::Debug + Send {
-    /// `event` has happened on the line called `name`, whose drives are on `bus`.
-    fn tell(&mut self, event: &Event, name: &str, bus: &Bus);
+    /// `event` has happened on the line called `name`.
+    fn tell(&mut self, event: &Event, name: &str);
 }
 
 /// The log of a run, shared by all lines.
 impl Subscriber for Arc<Mutex<Logger>> {
-    fn tell(&mut self, event: &Event, name: &str, bus: &Bus) {
-        lock(self).log(event, name, bus);
+    fn tell(&mut self, event: &Event, name: &str) {
+        lock(self).log(event, name);
     }
 }
 
@@ -71,7 +71,8 @@ enum Next {
 
 impl LineServer {
     /// The line called `name` with the drives on `bus`, set as `wire` says; commands come to `inbox`. It has no port yet.
-    pub fn new(name: String, bus: Bus, wire: WireSpec, clock: Clock, inbox: Inbox) -> Self {
+    pub fn new(name: String, mut bus: Bus, wire: WireSpec, clock: Clock, inbox: Inbox) -> Self {
+        bus.observe(false);
         Self {
             name,
             bus,
@@ -99,6 +100,7 @@ impl LineServer {
 
     /// Adds a subscriber to the events of the line.
     pub fn subscribe(&mut self, subscriber: Box<dyn Subscriber>) {
+        self.bus.observe(true);
         self.subscribers.push(subscriber);
     }
 
@@ -260,8 +262,7 @@ impl LineServer {
                 Output::Close(link) => self.ports.close(link),
                 Output::Moved(mode) => self.moved(mode),
                 Output::Event(event) => {
-                    let (name, bus) = (&self.name, &self.bus);
-                    self.subscribers.iter_mut().for_each(|it| it.tell(&event, name, bus));
+                    self.subscribers.iter_mut().for_each(|it| it.tell(&event, &self.name));
                 }
             }
         }

@@ -1,17 +1,17 @@
-//! Writes the event log to stdout and to a file, each behind a queue of its own.
+//! Writes the event log to stdout and to a file, each behind a queue of its own. Whoever serves a line only queues the
+//! event; the thread behind the queue makes text of it.
 //!
 //! A pipe that is not read must not stop a drive: lines for which it is too slow are lost and counted, and the log says how
 //! much when it can write again. An output that fails ends there; that is told at once, and again when the run ends.
 
 use super::destination::Destination;
 use super::input::plain;
-use super::sink::Sink;
-use crate::bus::Bus;
+use super::sink::{Sink, Writable};
 use crate::event::Event;
-use crate::log::{json, text};
-use crate::text::one_line;
+use crate::log::{self, LogNotice};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
+use std::sync::Arc;
 use tracing::error;
 
 /// Lines that may wait for a slow reader.
@@ -33,13 +33,26 @@ pub struct Logger {
     file: Option<LogOutput>,
     /// Several lines: each event says on which it was.
     names: bool,
+    /// The names of those that have logged something.
+    lines: Vec<Arc<str>>,
 }
 
 #[derive(Debug)]
 struct LogOutput {
     name: String,
     format: LogFormat,
-    sink: Sink,
+    sink: Sink<LogEntry>,
+}
+
+/// What an output is given.
+#[derive(Debug)]
+enum LogEntry {
+    /// An event of a line, for people; with the name of the line if there are several.
+    Text(Event, Option<Arc<str>>),
+    /// An event of a line, for programs.
+    Json(Event, Arc<str>),
+    /// Entries were lost.
+    Lost(LogNotice, LogFormat),
 }
 
 impl Logger {
@@ -63,7 +76,7 @@ impl Logger {
             let sink = Sink::start("stdout", ROOM, Box::new(open))?;
             Ok::<_, io::Error>(LogOutput { name: "stdout".into(), format, sink })
         });
-        Ok(Self { stdout: stdout.transpose()?, file, names })
+        Ok(Self { stdout: stdout.transpose()?, file, names, lines: Vec::new() })
     }
 
     /// Starts a log in the file at `path` alone, as JSON.
@@ -75,17 +88,18 @@ impl Logger {
     }
 
     /// Logs an event of the line called `name`.
-    pub fn log(&mut self, event: &Event, name: &str, bus: &Bus) {
-        let object = || json::object(event, name, bus).to_string();
-        let for_file = self.file.is_some().then(object);
-        if let Some(stdout) = &mut self.stdout {
-            stdout.put(match stdout.format {
-                LogFormat::Json => for_file.clone().unwrap_or_else(object),
-                LogFormat::Text => for_people(event, self.names.then_some(name), bus),
+    pub fn log(&mut self, event: &Event, name: &str) {
+        let known = self.lines.iter().find(|it| &***it == name).cloned();
+        let name = known.unwrap_or_else(|| {
+            self.lines.push(name.into());
+            self.lines[self.lines.len() - 1].clone()
+        });
+        let names = self.names;
+        for output in self.stdout.iter_mut().chain(&mut self.file) {
+            output.put(match output.format {
+                LogFormat::Text => LogEntry::Text(event.clone(), names.then(|| name.clone())),
+                LogFormat::Json => LogEntry::Json(event.clone(), name.clone()),
             });
-        }
-        if let (Some(file), Some(line)) = (&mut self.file, for_file) {
-            file.put(line);
         }
     }
 
@@ -108,33 +122,26 @@ impl Drop for Logger {
     }
 }
 
-/// The text of an event, on the line called `name` if there are several.
-fn for_people(event: &Event, name: Option<&str>, bus: &Bus) -> String {
-    let line = text::line(event, bus);
-    match (name, line.split_once(' ')) {
-        (Some(name), Some((time, what))) => format!("{time} {} {what}", one_line(name)),
-        _ => line,
+impl Writable for LogEntry {
+    fn write_to(&self, output: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Text(event, line) => writeln!(output, "{}", log::text(event, line.as_deref())),
+            Self::Json(event, line) => writeln!(output, "{}", log::json(event, line)),
+            Self::Lost(lines, LogFormat::Text) => writeln!(output, "{}", lines.text()),
+            Self::Lost(lines, LogFormat::Json) => writeln!(output, "{}", lines.json()),
+        }
     }
 }
 
 impl LogOutput {
-    fn put(&mut self, mut line: String) {
+    fn put(&mut self, entry: LogEntry) {
         let lost = self.sink.lost();
         if lost > 0 {
-            let text = format!("{lost} lines of the log were lost: the reader is too slow");
-            let text = match self.format {
-                LogFormat::Text => text,
-                LogFormat::Json => {
-                    serde_json::json!({"event": "log_lost", "lines": lost, "text": text})
-                        .to_string()
-                }
-            };
-            self.sink.tell_lost(text + "\n");
+            self.sink.tell_lost(LogEntry::Lost(LogNotice::lost(lost), self.format));
         }
-        line.push('\n');
-        self.sink.put(line);
+        self.sink.put(entry);
         if let Some(why) = self.sink.has_failed() {
-            error!("cannot write the log to {}: {}; the log ends there", self.name, plain(why));
+            error!("can't write the log to {}: {}; it ends there", self.name, plain(why));
         }
     }
 }

@@ -1,13 +1,13 @@
-//! A writer behind a queue, in a thread of its own: whoever gives it a text never waits, whatever reads it.
+//! A writer behind a queue, in a thread of its own: whoever gives it something to write never waits, whatever reads it.
 //!
-//! A pipe that nobody reads, a FIFO that nobody has opened and a full disk must not stop a drive. Texts queue up to a
-//! limit; beyond it they are lost and counted.
+//! A pipe that nobody reads, a FIFO that nobody has opened and a full disk must not stop a drive. What is to be written
+//! queues up to a limit as it is, and is made into text by the thread; beyond the limit it is lost and counted.
 
 use crate::time::Duration;
+use std::collections::VecDeque;
 use std::io::{self, BufWriter, Write};
-use std::sync::mpsc::{
-    Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel,
-};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How long the end of a run waits for a slow reader to take the last texts.
 const LAST_TEXTS: Duration = Duration::from_secs(1);
@@ -15,51 +15,110 @@ const LAST_TEXTS: Duration = Duration::from_secs(1);
 /// What a writer writes to: opened in its thread, as that may wait for a reader.
 pub type Open = Box<dyn FnOnce() -> io::Result<Box<dyn Write>> + Send>;
 
+/// Something that a writer makes into text.
+pub trait Writable: Send + 'static {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What the output says.
+    fn write_to(&self, output: &mut dyn Write) -> io::Result<()>;
+}
+
+impl Writable for String {
+    fn write_to(&self, output: &mut dyn Write) -> io::Result<()> {
+        output.write_all(self.as_bytes())
+    }
+}
+
 /// A writer.
 #[derive(Debug)]
-pub struct Sink {
-    /// `None` once it is told to end, or has ended by itself.
-    queue: Option<SyncSender<String>>,
+pub struct Sink<T> {
+    queue: Arc<SinkQueue<T>>,
+    room: usize,
     lost: u64,
     ended: Receiver<io::Result<()>>,
     failure: Option<io::Error>,
 }
 
-impl Sink {
-    /// Starts one for what `open` opens; `room` texts may wait.
+/// What waits to be written. Its room is made once, as it is needed, and used again.
+#[derive(Debug)]
+struct SinkQueue<T> {
+    waiting: Mutex<Waiting<T>>,
+    changed: Condvar,
+}
+
+#[derive(Debug)]
+struct Waiting<T> {
+    items: VecDeque<T>,
+    /// Nothing more comes, or nothing more is written.
+    closed: bool,
+}
+
+impl<T> SinkQueue<T> {
+    fn lock(&self) -> MutexGuard<'_, Waiting<T>> {
+        // Nothing in here panics while it is locked.
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn close(&self) {
+        self.lock().closed = true;
+        self.changed.notify_one();
+    }
+
+    /// Waits for items and takes all of them, in exchange for what `taken` was. Will there be more?
+    fn take(&self, taken: &mut VecDeque<T>) -> bool {
+        let waiting = self.lock();
+        let idle = |it: &mut Waiting<T>| it.items.is_empty() && !it.closed;
+        let waiting = self.changed.wait_while(waiting, idle);
+        let mut waiting = waiting.unwrap_or_else(PoisonError::into_inner);
+        std::mem::swap(&mut waiting.items, taken);
+        !taken.is_empty()
+    }
+}
+
+impl<T: Writable> Sink<T> {
+    /// Starts one for what `open` opens; `room` items may wait.
     ///
     /// # Errors
     /// If the system has no thread to give.
     pub fn start(name: &str, room: usize, open: Open) -> io::Result<Self> {
-        let (queue, texts) = sync_channel(room);
+        let waiting = Mutex::new(Waiting { items: VecDeque::new(), closed: false });
+        let queue = Arc::new(SinkQueue { waiting, changed: Condvar::new() });
         let (end, ended) = sync_channel(1);
+        let from = queue.clone();
         std::thread::Builder::new().name(name.into()).spawn(move || {
-            let result = open().and_then(|output| write(&texts, output));
+            let result = open().and_then(|output| write(&from, output));
+            from.close();
             // Fails if nobody waits for it any more.
             let _ = end.send(result);
         })?;
-        Ok(Self { queue: Some(queue), lost: 0, ended, failure: None })
+        Ok(Self { queue, room, lost: 0, ended, failure: None })
     }
 
-    /// Gives it a text, if there is room.
-    pub fn put(&mut self, text: String) {
-        let Some(queue) = &self.queue else { return };
-        match queue.try_send(text) {
-            Ok(()) => {}
-            Err(TrySendError::Full(_)) => self.lost += 1,
-            Err(TrySendError::Disconnected(_)) => self.queue = None,
+    /// Gives it an item, if there is room.
+    pub fn put(&mut self, item: T) {
+        let mut waiting = self.queue.lock();
+        if waiting.closed {
+            return;
         }
+        if waiting.items.len() == self.room {
+            self.lost += 1;
+            return;
+        }
+        waiting.items.push_back(item);
+        drop(waiting);
+        self.queue.changed.notify_one();
     }
 
-    /// Texts that were lost since this was last 0, once there is room for a word about them.
+    /// Items that were lost since this was last 0, once there is room for a word about them.
     pub fn lost(&self) -> u64 {
         self.lost
     }
 
     /// Gives it a word about what was lost; without room for it that is one more.
-    pub fn tell_lost(&mut self, text: String) {
+    pub fn tell_lost(&mut self, item: T) {
         let before = std::mem::take(&mut self.lost);
-        self.put(text);
+        self.put(item);
         if self.lost > 0 {
             self.lost += before;
         }
@@ -67,7 +126,7 @@ impl Sink {
 
     /// Nothing more will come: a reader sees the end.
     pub fn close(&mut self) {
-        self.queue = None;
+        self.queue.close();
     }
 
     /// Why it has ended by itself, told once.
@@ -77,7 +136,6 @@ impl Sink {
         }
         match self.ended.try_recv() {
             Ok(Err(error)) => {
-                self.queue = None;
                 self.failure = Some(error);
                 self.failure.as_ref()
             }
@@ -89,8 +147,8 @@ impl Sink {
     ///
     /// # Errors
     /// Why it is not: `TimedOut` if nobody has read it.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.queue = None;
+    pub fn finish(self) -> io::Result<()> {
+        self.queue.close();
         if let Some(error) = self.failure {
             return Err(error);
         }
@@ -104,14 +162,14 @@ impl Sink {
     }
 }
 
-fn write(texts: &Receiver<String>, output: Box<dyn Write>) -> io::Result<()> {
+fn write<T: Writable>(queue: &SinkQueue<T>, output: Box<dyn Write>) -> io::Result<()> {
     let mut output = BufWriter::new(output);
-    while let Ok(text) = texts.recv() {
-        output.write_all(text.as_bytes())?;
-        // One flush for all that has queued up meanwhile.
-        while let Ok(text) = texts.try_recv() {
-            output.write_all(text.as_bytes())?;
+    let mut items = VecDeque::new();
+    while queue.take(&mut items) {
+        for item in items.drain(..) {
+            item.write_to(&mut output)?;
         }
+        // One flush for all that had queued up.
         output.flush()?;
     }
     Ok(())
@@ -167,7 +225,7 @@ mod tests {
     #[test]
     fn a_failure_is_told_once_and_at_the_end() {
         let refuse = || Err(io::Error::from(io::ErrorKind::StorageFull));
-        let mut sink = Sink::start("t", 2, Box::new(refuse)).unwrap();
+        let mut sink = Sink::<String>::start("t", 2, Box::new(refuse)).unwrap();
         while sink.has_failed().is_none() {
             std::thread::yield_now();
         }

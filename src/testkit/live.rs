@@ -75,7 +75,7 @@ fn served(
     let InUse { name, wire, bus, director, link, now, events } = rig.into_served();
     let (handle, inbox) = LineHandle::new();
     let log = logger.map(|mut logger| {
-        events.iter().for_each(|event| logger.log(event, &name, &bus));
+        events.iter().for_each(|event| logger.log(event, &name));
         Box::new(Arc::new(Mutex::new(logger)))
     });
     let serve = async move {

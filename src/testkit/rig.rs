@@ -390,7 +390,7 @@ impl Rig {
             match output {
                 Output::Transmit { frame, .. } => sent.extend_from_slice(&frame),
                 Output::Event(event) => {
-                    self.log.push(crate::log::text::line(&event, &self.bus));
+                    self.log.push(event.to_string());
                     self.events.push(event);
                 }
                 Output::Moved(mode) => {

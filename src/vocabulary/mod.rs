@@ -62,6 +62,23 @@ macro_rules! named_terms {
                 match self { $(Self::$variant => $about,)* }
             }
         }
+
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                to.serialize_str($crate::vocabulary::Named::name(*self))
+            }
+        }
+
+        #[cfg(feature = "cli")]
+        impl schemars::JsonSchema for $type {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                schemars::json_schema!({ "type": "string", "enum": [$($name),*] })
+            }
+        }
     };
 }
 pub(crate) use named_terms;

@@ -3,6 +3,7 @@
 //! Sends capitals; takes small letters too, as many masters send them.
 
 use super::{Adu, Frame, lrc};
+use std::fmt;
 
 /// Longest frame: `:`, 255 bytes as digits, CR LF.
 pub const MAX: usize = 513;
@@ -21,6 +22,18 @@ pub enum BadAscii {
         /// Of its bytes.
         want: u8,
     },
+}
+
+impl fmt::Display for BadAscii {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotHex(at) => write!(f, "character {} is not a hex digit", at + 1),
+            Self::Length(len) => {
+                write!(f, "{len} characters, expected an even number of at least 6")
+            }
+            Self::Lrc { got, want } => write!(f, "LRC {got:02X}, expected {want:02X}"),
+        }
+    }
 }
 
 /// Frames `pdu`.

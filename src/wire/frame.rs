@@ -1,6 +1,7 @@
 //! Bytes of frames and PDUs, and what a frame says.
 
 use super::PDU_MAX;
+use serde::{Serialize, Serializer};
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 
@@ -86,6 +87,24 @@ impl<const N: usize> fmt::Debug for Inline<N> {
     }
 }
 
+/// In hex, with spaces.
+impl<const N: usize> Serialize for Inline<N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{self:?}"))
+    }
+}
+
+#[cfg(feature = "cli")]
+impl<const N: usize> schemars::JsonSchema for Inline<N> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Hex".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "pattern": "^([0-9A-F]{2}( [0-9A-F]{2})*)?$" })
+    }
+}
+
 /// What a frame says once framing and checksum are off: who, and what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Adu<'a> {
@@ -115,4 +134,16 @@ pub enum NoiseCause {
     Speed(u32),
     /// A `:` inside a frame began a new one, or the next character never came.
     Unfinished,
+}
+
+impl fmt::Display for NoiseCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooShort => f.write_str("too short for a frame"),
+            Self::TooLong => f.write_str("too long for a frame"),
+            Self::OutsideFrame => f.write_str("outside a frame"),
+            Self::Speed(baud) => write!(f, "sent at {baud} baud"),
+            Self::Unfinished => f.write_str("incomplete frame"),
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! MBAP frames: Modbus on TCP (messaging on TCP/IP, 3.1.3). The length field ends a frame, no timer.
 
 use super::{Adu, Frame, PDU_MAX};
+use std::fmt;
 
 /// Bytes before the PDU: transaction, protocol, length, unit.
 pub const HEADER: usize = 7;
@@ -14,6 +15,18 @@ pub enum BadHeader {
     Protocol(u16),
     /// A length field outside 2..254.
     Length(u16),
+}
+
+impl fmt::Display for BadHeader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Protocol(id) => write!(
+                f,
+                "protocol identifier {id} is not Modbus; is the master using serial framing?"
+            ),
+            Self::Length(len) => write!(f, "length {len} is out of range"),
+        }
+    }
 }
 
 /// Frames `pdu` as the answer to `transaction`.

@@ -6,7 +6,7 @@
 
 use drivemu::bench::{Device, DeviceSpec, machine, raw::RawMachine};
 use drivemu::bus::{Bus, Command, DriveOrder, Output};
-use drivemu::event::{Change, DriveId, What};
+use drivemu::event::{DriveEvent, DriveId, EventKind};
 use drivemu::line::Framing;
 use drivemu::model::builtin::Builtin;
 use drivemu::testkit::hex;
@@ -109,7 +109,10 @@ fn run(hour: &Hour, powered: bool) -> usize {
         bus.receive(now, link, &rtu::encode(unit, &pdu));
         while let Some(output) = bus.poll_output() {
             if let Output::Event(event) = output
-                && matches!(event.what, What::Drive { change: Change::Homed { .. }, .. })
+                && matches!(
+                    event.kind,
+                    EventKind::Drive { event: DriveEvent::HomingComplete { .. }, .. }
+                )
             {
                 homed += 1;
             }

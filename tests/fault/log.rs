@@ -1,7 +1,7 @@
 //! What the log for programs says about each kind; the log for people stands in docs/faults.md.
 
 use super::{READ, acme, ask, drive};
-use drivemu::log::json::object;
+use crate::kit::object;
 use drivemu::medium::FaultKind;
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ fn a_repeated_command_as_json() {
     let row = rig.drive().model().wiring.commands[0].row;
     let [high, low] = rig.drive().model().map.row(row).at.to_be_bytes();
     (0..2).for_each(|_| drop(ask(&mut rig, &[6, high, low, 0, 4])));
-    let told = object(rig.events().last().expect("an event"), "line", rig.bus());
+    let told = object(rig.events().last().expect("an event"));
     let text = "unit 1 clear_position repeated; the first reply never arrived (#1)";
     let want = json!({"t": 0.3, "line": "line", "event": "repeated_command", "unit": 1,
         "action": "clear_position", "count": 1, "text": text});
@@ -39,7 +39,7 @@ fn each_kind_as_json() {
         };
         let mut rig = drive(&[spec]);
         ask(&mut rig, READ);
-        let told = rig.events().iter().map(|event| object(event, "line", rig.bus()));
+        let told = rig.events().iter().map(object);
         let told = told.filter(|it| it["event"] == "fault").collect::<Vec<Value>>();
         let [Value::Object(told)] = told.as_slice() else { panic!("{told:?}") };
         let common = [("rule", json!(kind.name)), ("kind", json!(kind.name))];

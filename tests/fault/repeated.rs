@@ -2,7 +2,7 @@
 
 use super::{SILENCE, acme, ask, drive_of, frame};
 use drivemu::bus::{Command, DriveOrder};
-use drivemu::event::{Change, DriveId, Event, What};
+use drivemu::event::{DriveEvent, DriveId, Event, EventKind};
 use drivemu::medium::FaultKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
@@ -24,14 +24,16 @@ fn stepper(specs: &[&str]) -> Rig {
 }
 
 fn repeated(rig: &Rig) -> u64 {
-    let told = rig.events().iter().filter(|it| matches!(it.what, What::RepeatedCommand { .. }));
+    let told =
+        rig.events().iter().filter(|it| matches!(it.kind, EventKind::RepeatedCommand { .. }));
     assert_eq!(told.count() as u64, rig.bus().repeated_commands(DriveId(0)), "{}", rig.log());
     rig.bus().repeated_commands(DriveId(0))
 }
 
 fn moves(rig: &Rig) -> usize {
-    let moved =
-        |event: &&Event| matches!(event.what, What::Drive { change: Change::Moves { .. }, .. });
+    let moved = |event: &&Event| {
+        matches!(event.kind, EventKind::Drive { event: DriveEvent::Moving { .. }, .. })
+    };
     rig.events().iter().filter(moved).count()
 }
 

@@ -3,7 +3,7 @@
 use super::{READ, ask, drive_of, effects};
 use crate::properties::traffic::{Piece, pieces};
 use drivemu::bus::WakeReason;
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::medium::{FaultEffect, FaultKind, Preset};
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
@@ -21,8 +21,8 @@ fn run(specs: &[&str], seed: u64, n: usize) -> (Rig, Vec<u8>) {
 
 /// Which rule acted, each time that one did.
 fn acted(rig: &Rig, name: &str) -> Vec<(u64, FaultEffect)> {
-    let told = |event: &drivemu::event::Event| match &event.what {
-        What::Fault(hit) if *hit.rule == *name => Some((event.at.as_nanos(), hit.effect)),
+    let told = |event: &drivemu::event::Event| match &event.kind {
+        EventKind::Fault(hit) if *hit.rule == *name => Some((event.at.as_nanos(), hit.effect)),
         _ => None,
     };
     rig.events().iter().filter_map(told).collect()

@@ -3,7 +3,7 @@
 use super::oracle::Hcfa;
 use super::scene::{Scene, Setting, hcfa_x, k_series, yako};
 use drivemu::bus::{Command, DriveOrder};
-use drivemu::event::{Change, DriveId, What};
+use drivemu::event::{DriveEvent, DriveId, EventKind};
 use drivemu::motion::{Machine, Zone};
 use drivemu::testkit::Rig;
 use drivemu::vocabulary::{AlarmCause, HomeEnd, Output, Quantity};
@@ -51,8 +51,8 @@ fn brakes(model: &str, cause: AlarmCause) -> bool {
 }
 
 fn lost(rig: &Rig) -> Option<HomeEnd> {
-    rig.events().iter().rev().find_map(|event| match event.what {
-        What::Drive { change: Change::HomingLost { why, .. }, .. } => Some(why),
+    rig.events().iter().rev().find_map(|event| match event.kind {
+        EventKind::Drive { event: DriveEvent::HomingAborted { why, .. }, .. } => Some(why),
         _ => None,
     })
 }

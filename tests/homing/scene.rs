@@ -3,7 +3,7 @@
 use super::oracle::{End, Hcfa};
 use crate::kit::rig;
 use drivemu::bench::DeviceSpec;
-use drivemu::event::{Change, Event, What};
+use drivemu::event::{DriveEvent, Event, EventKind};
 use drivemu::motion::{Index, Machine, Zone};
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
@@ -283,28 +283,28 @@ pub fn play(setting: &Setting, scene: &Scene, slices: &[u64]) -> Outcome {
 }
 
 fn end(rig: &Rig, scene: &Scene, kept: bool) -> End {
-    let told = |want: &dyn Fn(Change) -> Option<i64>| {
-        rig.events().iter().rev().find_map(|event| match event.what {
-            What::Drive { change, .. } => want(change),
+    let told = |want: &dyn Fn(&DriveEvent) -> Option<i64>| {
+        rig.events().iter().rev().find_map(|event| match &event.kind {
+            EventKind::Drive { event: change, .. } => want(change),
             _ => None,
         })
     };
     let alarm = |cause| {
         told(&|change| {
-            matches!(change, Change::Alarm { cause: it, .. } if it == cause).then_some(0)
+            matches!(change, DriveEvent::Alarm { cause: it, .. } if *it == cause).then_some(0)
         })
         .is_some()
     };
     let position = rig.drive().quantity(Quantity::PositionActual);
     let lost = told(&|change| match change {
-        Change::HomingLost { why, .. } => Some(why as i64),
+        DriveEvent::HomingAborted { why, .. } => Some(*why as i64),
         _ => None,
     });
     match lost {
         None => {
             let found = told(&|change| match change {
-                Change::Origin { at, .. } => Some(at),
-                Change::Finds { step, at, .. } if step.then == Then::Origin => Some(at),
+                DriveEvent::HomingOrigin { at, .. } => Some(*at),
+                DriveEvent::HomingFound { step, at, .. } if step.then == Then::Origin => Some(*at),
                 _ => None,
             });
             let origin = found.unwrap_or(scene.start);

@@ -6,7 +6,7 @@ use super::oracle::Hcfa;
 use super::print::{self, Phase, Sentences};
 use super::scene::{Scene, Setting, hcfa_x, k_series, scenes, yako};
 use super::{CLOSED, OPEN, config};
-use drivemu::event::{Change, What};
+use drivemu::event::{DriveEvent, EventKind};
 use drivemu::time::Instant;
 use drivemu::vocabulary::Quantity;
 use proptest::prelude::*;
@@ -68,8 +68,8 @@ fn hold(
     let speeds = Speeds { high, low: per_s(scene.slow), slope, collision: 200.0 };
     let course = Course::new(all, speeds, scene);
     let mut rig = setting.begin();
-    let begun = rig.events().iter().find_map(|event| match event.what {
-        What::Drive { change: Change::Homes { .. }, .. } => Some(event.at),
+    let begun = rig.events().iter().find_map(|event| match event.kind {
+        EventKind::Drive { event: DriveEvent::HomingStarted { .. }, .. } => Some(event.at),
         _ => None,
     });
     let begun = begun.expect("it homes").as_secs_f64();

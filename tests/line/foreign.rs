@@ -1,7 +1,7 @@
 //! Strangers on the line: their requests and answers are followed, never answered, never taken for ours.
 
 use super::{PATIENT_GAP, STRICT_GAP, banks, cell, frame, in_step, unchanged};
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::testkit::{Rig, hex};
 use drivemu::time::Duration;
 use drivemu::wire::crc16;
@@ -203,10 +203,10 @@ fn a_damaged_conversation_of_others() {
 }
 
 fn kinds(rig: &Rig) -> Vec<&'static str> {
-    let kind = |event: &drivemu::event::Event| match event.what {
-        What::Foreign { answer: false, .. } => Some("request"),
-        What::Foreign { answer: true, .. } => Some("answer"),
-        What::Drive { .. } => None,
+    let kind = |event: &drivemu::event::Event| match event.kind {
+        EventKind::Foreign { reply: false, .. } => Some("request"),
+        EventKind::Foreign { reply: true, .. } => Some("answer"),
+        EventKind::Drive { .. } => None,
         _ => Some("something else"),
     };
     rig.events().iter().filter_map(kind).collect()

@@ -2,7 +2,7 @@
 
 use super::{PATIENT_GAP, STRICT_GAP, cell, frame, in_step, one, silent};
 use crate::kit::MODELS;
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use drivemu::wire::crc16;
@@ -37,7 +37,7 @@ fn frames((request, answer): (&str, &str)) -> Vec<Vec<u8>> {
 }
 
 fn foreign(rig: &Rig) -> usize {
-    rig.events().iter().filter(|it| matches!(it.what, What::Foreign { .. })).count()
+    rig.events().iter().filter(|it| matches!(it.kind, EventKind::Foreign { .. })).count()
 }
 
 /// The CRC and a silence of t3.5 end such a frame, and not a moment less.
@@ -157,8 +157,8 @@ fn questions_and_answers_are_told_apart() {
         for bytes in frames(*conversation) {
             silent(&mut rig, &bytes);
         }
-        let kinds = rig.events().iter().filter_map(|it| match it.what {
-            What::Foreign { answer, .. } => Some(answer),
+        let kinds = rig.events().iter().filter_map(|it| match it.kind {
+            EventKind::Foreign { reply, .. } => Some(reply),
             _ => None,
         });
         assert_eq!(kinds.collect::<Vec<_>>(), [false, true], "{}", rig.log());

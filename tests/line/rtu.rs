@@ -2,7 +2,7 @@
 
 use super::{PATIENT_GAP, STRICT_GAP, banks, frame, in_step, one, silent, unchanged};
 use crate::kit::MODELS;
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::testkit::Rig;
 use drivemu::time::Duration;
 use drivemu::wire::NoiseCause;
@@ -171,8 +171,8 @@ fn too_long() {
                 let mut bytes = vec![0x03; len];
                 bytes[0] = first;
                 silent(&mut rig, &bytes);
-                let noise = rig.events().iter().find_map(|event| match event.what {
-                    What::Noise { len, why, .. } => Some((len, why)),
+                let noise = rig.events().iter().find_map(|event| match event.kind {
+                    EventKind::Noise { len, why, .. } => Some((len, why)),
                     _ => None,
                 });
                 assert_eq!(noise, Some((len, NoiseCause::TooLong)), "{}", rig.log());

@@ -1,7 +1,7 @@
 //! Drives of three makers on one line: each answers its own, and a broadcast reaches them all.
 
 use super::{banks, cell, frame, in_step, silent, unchanged};
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::testkit::Rig;
 
 #[test]
@@ -96,8 +96,8 @@ fn the_log_tells_of_every_drive_that_a_broadcast_reached() {
     silent(&mut rig, &frame("00 06 0304 0007"));
     let refused: Vec<bool> = rig.events()[before..]
         .iter()
-        .filter_map(|event| match &event.what {
-            What::Broadcast { refusal, .. } => Some(refusal.is_some()),
+        .filter_map(|event| match &event.kind {
+            EventKind::Broadcast(it) => Some(it.refusal.is_some()),
             _ => None,
         })
         .collect();

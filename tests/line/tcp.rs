@@ -3,7 +3,7 @@
 use crate::kit::{bench_line, drain, line_of, text_of};
 use drivemu::bench::DeviceSpec;
 use drivemu::bus::{Bus, LinkId};
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::line::Framing;
 use drivemu::time::Instant;
 use drivemu::vocabulary::Cause;
@@ -92,7 +92,11 @@ fn a_stream_that_lies_is_closed_once_and_not_answered() {
                 let drained = drain(&mut bus);
                 assert_eq!(drained.sent, [0_u8; 0], "{lie:02X?}");
                 closes += usize::from(drained.closed);
-                lost += drained.events.iter().filter(|it| matches!(it.what, What::Lost(_))).count();
+                lost += drained
+                    .events
+                    .iter()
+                    .filter(|it| matches!(it.kind, EventKind::StreamClosed { .. }))
+                    .count();
             }
             assert_eq!((closes, lost), (1, 1), "{lie:02X?} at {at}");
             assert_eq!(bus.poll_at(), None);
@@ -164,8 +168,8 @@ fn a_function_with_the_exception_bit_is_refused() {
     bus.receive(now, link, &encode(1, 1, &[0x83, 2]));
     let drained = drain(&mut bus);
     assert_eq!(drained.sent, *encode(1, 1, &[0x83, 2]));
-    let refused = drained.events.iter().any(|it| match it.what {
-        What::Transaction(it) => it.refusal.is_some_and(|it| it.cause == Cause::Function),
+    let refused = drained.events.iter().any(|it| match &it.kind {
+        EventKind::Transaction(it) => it.refusal.is_some_and(|it| it.cause == Cause::Function),
         _ => false,
     });
     assert!(refused, "{:?}", drained.events);

@@ -2,7 +2,7 @@
 
 use super::{ANSWER, Bench, MS, READ, frame};
 use drivemu::bus::WakeReason;
-use drivemu::event::What;
+use drivemu::event::EventKind;
 use drivemu::rng::Fork;
 use drivemu::serial::Settings;
 use drivemu::time::{Duration, Instant};
@@ -31,9 +31,9 @@ fn unit(bytes: &[u8]) -> Option<u8> {
 fn heard(bench: &Bench) -> [usize; 3] {
     let mut heard = [0; 3];
     for event in &bench.events {
-        match &event.what {
-            What::Foreign { answer, .. } => heard[usize::from(*answer)] += 1,
-            What::Noise { .. } => heard[2] += 1,
+        match &event.kind {
+            EventKind::Foreign { reply, .. } => heard[usize::from(*reply)] += 1,
+            EventKind::Noise { .. } => heard[2] += 1,
             other => panic!("{other:?}"),
         }
     }

@@ -107,7 +107,7 @@ fn the_log_tells_of_homings() {
         "text",
     ];
     let told = rig.events().iter().map(|event| {
-        let object = drivemu::log::json::object(event, "line", rig.bus());
+        let object = crate::kit::object(event);
         let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
         fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
     });

@@ -162,7 +162,7 @@ fn the_log_tells_of_motions() {
 pub(super) fn told(rig: &Rig, kinds: &[&str]) -> Vec<String> {
     let fields = ["event", "segment", "from", "to", "rpm", "at", "action", "input", "why", "text"];
     let told = rig.events().iter().map(|event| {
-        let object = drivemu::log::json::object(event, "line", rig.bus());
+        let object = crate::kit::object(event);
         let field = |name: &&str| object.get(*name).map(|value| value.to_string().replace('"', ""));
         fields.iter().filter_map(field).collect::<Vec<_>>().join(" | ")
     });

@@ -23,7 +23,7 @@ use super::context::DriveContext;
 use super::effects::EffectQueue;
 use super::setup::Setup;
 use crate::behaviour::{Commands, Effect, Jog, Motor, MotorLevels, MotorTimer, Phase, Ramp};
-use crate::event::{Change, Ignored};
+use crate::event::{DriveEvent, Ignored};
 use crate::model::{AlarmStop, Model};
 use crate::time::Instant;
 use crate::vocabulary::{HomeEnd, HomeStarter, InhibitRule, Input, Setting, Threshold};
@@ -309,12 +309,12 @@ impl Axis {
         self.settings.take(cx.registers, Moment::Start);
         self.course = Some(Course::Home { finish, factor });
         (self.method, self.origin.found) = (method, false);
-        out.change(Change::Homes { method });
+        out.change(DriveEvent::HomingStarted { method });
         Ok(())
     }
 
     /// The homing is done: the position register says from now on what it is set to say.
-    pub(super) fn finish_home(&mut self, cx: DriveContext<'_>, origin: i64) -> Change {
+    pub(super) fn finish_home(&mut self, cx: DriveContext<'_>, origin: i64) -> DriveEvent {
         let finish = match self.course {
             Some(Course::Home { finish, .. }) => finish,
             _ => homing::FINISH,
@@ -326,7 +326,7 @@ impl Axis {
         let coordinate = settings.way(Setting::HomeCoordinate).unwrap_or(0);
         self.origin.find(finish, point, coordinate);
         let position = observe::wrapped(cx.registers, self.at(cx).position());
-        Change::Homed { method: self.method, position }
+        DriveEvent::HomingComplete { method: self.method, position }
     }
 
     /// The position register says 0 from now on.

@@ -7,7 +7,7 @@ use super::{Axis, segments};
 use crate::behaviour::Phase;
 use crate::drive::context::DriveContext;
 use crate::drive::effects::EffectQueue;
-use crate::event::{Change, Ignored};
+use crate::event::{ChainEnd, DriveEvent, Ignored};
 use crate::time::Instant;
 use crate::vocabulary::{Input, Lasts, Setting, Target};
 
@@ -128,7 +128,7 @@ impl Axis {
         let why = self.segments.chain.due(cx.now)?;
         let (from, to) = (self.segments.number, self.segments.next(cx));
         let started = segments::target_of(cx.registers, to).and_then(|_| {
-            out.change(Change::ChainStep { from, to, why });
+            out.change(DriveEvent::ChainStep { from, to, why });
             // The motion under way, if there is one, is that of the segment which gives way.
             self.start_segment(cx, to, true)
         });
@@ -136,7 +136,8 @@ impl Axis {
             Ok(started) => Some(started),
             Err(why) => {
                 self.segments.chain.end();
-                out.change(Change::ChainEnded { at: to, why });
+                let end = ChainEnd { decoder: cx.registers.decoder(), at: to, why };
+                out.change(DriveEvent::ChainEnded(end));
                 None
             }
         }

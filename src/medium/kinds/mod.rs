@@ -121,6 +121,8 @@ trait Fault: Copy + Serialize {
     const ABOUT: &'static str;
     /// The keys that it has besides those of every rule.
     const KEYS: &'static [FaultKey] = &[];
+    /// What its event says besides its keys: name in JSON, and what it means; yes or no.
+    const REPORTS: &'static [(&'static str, &'static str)] = &[];
     /// Why it is impossible on Modbus TCP, if it is.
     const IMPOSSIBLE_ON_TCP: Option<&'static str> = None;
     /// Does it also act on requests to unit 0, which have no reply?
@@ -227,6 +229,8 @@ pub struct FaultKind {
     pub about: &'static str,
     /// The keys that it has besides those of every rule.
     pub keys: &'static [FaultKey],
+    /// What its event says besides its keys: name in JSON, and what it means; yes or no.
+    pub reports: &'static [(&'static str, &'static str)],
     /// Why it is impossible on Modbus TCP, if it is.
     pub impossible_on_tcp: Option<&'static str>,
     /// Does it also act on requests to unit 0, which have no reply?
@@ -240,6 +244,7 @@ impl FaultKind {
             name: F::NAME,
             about: F::ABOUT,
             keys: F::KEYS,
+            reports: F::REPORTS,
             impossible_on_tcp: F::IMPOSSIBLE_ON_TCP,
             takes_broadcasts: F::TAKES_BROADCASTS,
             read,

@@ -24,6 +24,8 @@ impl Fault for Reorder {
         1,
         u32::MAX as u64,
     )];
+    const REPORTS: &'static [(&'static str, &'static str)] =
+        &[("ahead", "was it sent ahead of the one that was held?")];
 
     fn read(keys: &FaultKeys) -> Result<Self, KeyRefusal> {
         Ok(Self { most_ms: keys.number("ms").unwrap_or(5000), is_ahead: false })

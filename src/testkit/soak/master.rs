@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::bank::word_of;
 use crate::bus::Bus;
 use crate::drive::Drive;
-use crate::event::{DriveId, What};
+use crate::event::{DriveId, EventKind};
 use crate::model::{Access, Located, WordOrder};
 use crate::model::{Model, Row, RowId, SettingRow};
 use crate::wire::function::{READ, WRITE_MANY, WRITE_ONE};
@@ -146,17 +146,17 @@ fn value(row: &Row, draws: &mut Draws) -> i64 {
 /// Did anything happen in this call that may change rows?
 pub fn may_change(seen: &[SoakEvent]) -> bool {
     seen.iter().any(|it| match it {
-        SoakEvent::Told(What::Drive { .. }) => true,
+        SoakEvent::Told(EventKind::Drive { .. }) => true,
         SoakEvent::Told(what) => accepted(what).is_some(),
         SoakEvent::Frame(_) => false,
     })
 }
 
 /// The drive and the request, if `what` is a write that a drive has accepted.
-fn accepted(what: &What) -> Option<(DriveId, &Pdu)> {
+fn accepted(what: &EventKind) -> Option<(DriveId, &Pdu)> {
     let (drive, request) = match what {
-        What::Transaction(it) if it.refusal.is_none() => (it.drive, &it.request),
-        What::Broadcast { drive, request, refusal: None, .. } => (*drive, request),
+        EventKind::Transaction(it) if it.refusal.is_none() => (it.drive, &it.request),
+        EventKind::Broadcast(it) if it.refusal.is_none() => (it.drive, &it.request),
         _ => return None,
     };
     (request.first() != Some(&crate::wire::function::READ)).then_some((drive, request))
@@ -164,7 +164,7 @@ fn accepted(what: &What) -> Option<(DriveId, &Pdu)> {
 
 /// If the call was one write that was accepted and set nothing off, then the drive holds all that was written.
 pub fn written(seen: &[SoakEvent], bus: &Bus) -> Result<(), String> {
-    let set_off = |it: &&SoakEvent| matches!(it, SoakEvent::Told(What::Drive { .. }));
+    let set_off = |it: &&SoakEvent| matches!(it, SoakEvent::Told(EventKind::Drive { .. }));
     let mut writes = seen.iter().filter_map(|it| match it {
         SoakEvent::Told(what) => accepted(what),
         SoakEvent::Frame(_) => None,

@@ -11,7 +11,7 @@ use crate::bank::Bank;
 use crate::bench::WireSpec;
 use crate::bus::{Bus, Command, LineCommand, LinkId, Output};
 use crate::drive::View;
-use crate::event::{DriveId, Event, What};
+use crate::event::{DriveId, Event, EventKind};
 use crate::model::Located;
 use crate::model::{Counts, Model};
 use crate::motion::State;
@@ -148,9 +148,9 @@ impl<'a> SoakPlayer<'a> {
             let first = self.played.events.len();
             self.ask(unit, &read, FrameDamage::Whole)?;
             self.fall_silent()?;
-            let heard = |event: &Event| match &event.what {
-                What::Transaction(it) => it.unit == unit && it.request[..] == read,
-                What::Fault(hit) => hit.unit == unit,
+            let heard = |event: &Event| match &event.kind {
+                EventKind::Transaction(it) => it.unit == unit && it.request[..] == read,
+                EventKind::Fault(hit) => hit.unit == unit,
                 _ => false,
             };
             if !self.played.events[first..].iter().any(heard) {
@@ -246,7 +246,7 @@ impl<'a> SoakPlayer<'a> {
                     seen.push(SoakEvent::Frame(frame));
                 }
                 Output::Event(event) => {
-                    seen.push(SoakEvent::Told(event.what.clone()));
+                    seen.push(SoakEvent::Told(event.kind.clone()));
                     self.played.events.push(event);
                 }
                 Output::Moved(mode) => {
@@ -293,13 +293,13 @@ impl<'a> SoakPlayer<'a> {
     /// The bug that was planted, if there is one.
     fn damage(&self, seen: &mut Vec<SoakEvent>, before: &mut Before) {
         let answered = seen.windows(2).enumerate().find_map(|(i, it)| match it {
-            [SoakEvent::Frame(frame), SoakEvent::Told(What::Transaction(told))] => {
-                Some((i, *frame, *told))
+            [SoakEvent::Frame(frame), SoakEvent::Told(EventKind::Transaction(told))] => {
+                Some((i, *frame, told.clone()))
             }
             _ => None,
         });
         let Some((i, frame, told)) = answered else { return };
-        let refused = told.answer[0] & EXCEPTION != 0;
+        let refused = told.reply[0] & EXCEPTION != 0;
         match self.bug {
             Some(InjectedBug::AnswersTwice) if refused => seen.insert(i, SoakEvent::Frame(frame)),
             Some(InjectedBug::WritesHalf) if refused && told.request[0] == WRITE_MANY => {

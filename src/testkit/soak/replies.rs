@@ -1,7 +1,7 @@
 //! Holds what leaves a line against what its drives say that they did: one answer a request, from the unit that
 //! was asked, and nothing else, but for what a fault rule says that it did.
 
-use crate::event::{DriveId, Transaction, What};
+use crate::event::{DriveId, EventKind, Transaction};
 use crate::medium::{FaultHit, Leaves, LeavingReply, Passage};
 use crate::wire::{BROADCAST, Coding, Exception, Frame, Response, ascii, mbap, rtu};
 
@@ -17,7 +17,7 @@ pub enum SoakEvent {
     /// A frame left.
     Frame(Frame),
     /// Something was told.
-    Told(What),
+    Told(EventKind),
 }
 
 /// How things were before the call: how frames are coded, which drive answered to a unit, and whether a frame was
@@ -47,21 +47,23 @@ impl Replies {
                 SoakEvent::Told(what) => what,
             };
             let hit = match (what, rest.peek()) {
-                (What::Transaction(_), Some(SoakEvent::Told(What::Fault(hit)))) => Some(hit),
+                (EventKind::Transaction(_), Some(SoakEvent::Told(EventKind::Fault(hit)))) => {
+                    Some(hit)
+                }
                 _ => None,
             };
             // That one is about the second of two requests, which no drive saw.
             let hit =
                 hit.filter(|it| !context.pending || it.effect.passage() == Passage::Delivered);
             match what {
-                What::Transaction(it) => {
+                EventKind::Transaction(it) => {
                     addressed(it, context)?;
                     rest.next_if(|_| hit.is_some());
                     let leaves = hit.map_or(Leaves::INTACT, |hit| hit.effect.leaves());
                     self.answered(it, leaves, &mut frames, context.coding)?;
                 }
-                What::Fault(hit) => self.spared(hit, &mut frames, context.coding)?,
-                What::BadCrc { frame, answered: Some((_, code)), .. } => {
+                EventKind::Fault(hit) => self.spared(hit, &mut frames, context.coding)?,
+                EventKind::BadCrc { frame, exception: Some(code), .. } => {
                     let function = frame.get(1).map_or(0, |it| it & 0x7F);
                     let want = exception(function, *code);
                     let want = framed(context.coding, frame[0], &want);
@@ -81,7 +83,7 @@ impl Replies {
         frames: &mut Vec<Frame>,
         coding: Coding,
     ) -> Result<(), String> {
-        let whole = framed(coding, it.unit, &it.answer);
+        let whole = framed(coding, it.unit, &it.reply);
         let Leaves { before, reply, after } = leaves;
         let is_there = !matches!(reply, LeavingReply::Later | LeavingReply::Nothing);
         let fits = |own: &[Frame]| match (reply, own.get(before)) {

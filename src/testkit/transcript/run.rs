@@ -9,11 +9,11 @@ use crate::units::parse_integer;
 use crate::vocabulary::{Named, Output, Quantity};
 use crate::wire::{ascii, rtu};
 
-/// Plays the transcript in `text`.
+/// Plays the transcript in `text`, and gives back the line as it is then, with all that has happened.
 ///
 /// # Errors
 /// The first line that did not come out as it says, with the log.
-pub fn run(text: &str, library: &dyn Library) -> Result<(), TranscriptFailure> {
+pub fn run(text: &str, library: &dyn Library) -> Result<Rig, TranscriptFailure> {
     let script = Script::parse(text)?;
     let line = line(&script, library)?;
     let mut player = TranscriptPlayer { rig: Rig::line(line), pending: None, told: 0 };
@@ -22,7 +22,9 @@ pub fn run(text: &str, library: &dyn Library) -> Result<(), TranscriptFailure> {
         played.map_err(|what| player.failure(*number, what))?;
     }
     let last = script.steps.last().map_or(1, |(number, _)| *number);
-    player.settle(&TranscriptStep::Log(String::new())).map_err(|what| player.failure(last, what))
+    let settled = player.settle(&TranscriptStep::Log(String::new()));
+    settled.map_err(|what| player.failure(last, what))?;
+    Ok(player.rig)
 }
 
 fn line(script: &Script, library: &dyn Library) -> Result<BenchLine, TranscriptFailure> {

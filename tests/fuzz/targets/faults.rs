@@ -34,7 +34,7 @@ fuzz_target!(|input: &[u8]| {
         bus.receive(now, link, &rtu::encode(1, pdu));
         while let Some(output) = bus.poll_output() {
             if let Output::Event(event) = output {
-                common::tell(&event, &bus);
+                common::tell(&event);
             }
         }
     }

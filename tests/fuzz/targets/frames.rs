@@ -84,7 +84,7 @@ fn drain(bus: &mut Bus, link: &mut LinkId, framing: Framing) -> usize {
                 bus.close(gone);
                 *link = bus.open(framing);
             }
-            Output::Event(event) => common::tell(&event, bus),
+            Output::Event(event) => common::tell(&event),
             Output::Keep(_) | Output::Moved(_) => {}
         }
     }
