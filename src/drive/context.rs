@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::time::Instant;
 use crate::vocabulary::{Input, Inputs};
 
-/// What a part is told of the others.
+/// What a part sees of the others.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DriveContext<'a> {
     pub(super) now: Instant,

@@ -1,8 +1,8 @@
 //! Orders that have no effect: the log says why, once.
 //!
-//! An action or a rising edge that comes to nothing is told of when it comes. A level that is
-//! active and does nothing is told of when it rises, and again when the reason changes; so is an edge that came too
-//! early, once it would act if it came anew ([`NoEffect::report_inactive`]). A bit that does not reach its signal is told of when
+//! An action or a rising edge without effect is reported when it comes. A level that is
+//! active without effect is reported when it rises, and again when the reason changes; so is an edge that came too
+//! early, once it would act if it came anew ([`NoEffect::report_inactive`]). A bit that does not reach its signal is reported when
 //! it is set. Nothing is told again because a master writes it again.
 
 use super::acts::{Acts, acts, asks_for_run};
@@ -41,7 +41,7 @@ struct Active {
     told: Reported,
 }
 
-/// What was told of an active signal.
+/// What was reported about an active signal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Reported {
     /// Nothing yet.
@@ -102,7 +102,7 @@ impl NoEffect {
         self.inputs[input as usize].told = told;
     }
 
-    /// Power comes on: what is not simulated is told of anew.
+    /// Power comes on: what is not simulated is reported again.
     pub(super) fn power_on(&mut self) {
         self.not_simulated = 0;
     }
@@ -167,7 +167,7 @@ impl NoEffect {
         self.report_bits(view, out);
     }
 
-    /// Of signals that contradict each other only the last is told of.
+    /// Of signals that contradict each other only the last is reported.
     fn is_older(&self, cx: DriveContext<'_>, input: Input, why: Ignored) -> bool {
         let age = |input: Input| (self.inputs[input as usize].since, input);
         let mut others = cx.inputs.iter().filter(|other| asks_for_run(*other));

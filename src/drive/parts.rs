@@ -107,7 +107,7 @@ impl Parts {
         View::new(axis, &self.inputs, &self.comms, self.powered)
     }
 
-    /// What parts are told of each other at `now`.
+    /// What parts see of each other at `now`.
     pub(super) fn context(&self, now: Instant) -> DriveContext<'_> {
         DriveContext {
             now,
@@ -118,7 +118,7 @@ impl Parts {
         }
     }
 
-    /// The axis, what it is told of the others, and where its effects go.
+    /// The axis, what it sees of the others, and where its effects go.
     pub(super) fn split(&mut self) -> (DriveContext<'_>, &mut Axis, &mut EffectQueue) {
         let Self { registers, inputs, power, faults, axis, effects, now, .. } = self;
         let inputs = inputs.active();

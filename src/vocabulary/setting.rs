@@ -25,7 +25,7 @@ named_terms! {
         HomeFast "home.speed_fast" "speed of fast homing steps, and of the final move away from the origin",
         HomeSlow "home.speed_slow" "speed of slow homing steps",
         HomeAccel "home.accel" "acceleration and deceleration of a homing; a ramp time is the time up to `home.speed_fast`",
-        HomeWay "home.way" "home offset: distance of the final move away from the origin",
+        HomeOffset "home.way" "home offset: distance of the final move away from the origin",
         HomeCoordinate "home.coordinate" "value of the position register when homing is complete",
         HomeCollision "home.collision" "following error at a hard stop, in counts, that a homing takes as the collision",
         HomeTimeLimit "home.time_limit" "maximum duration of a homing; 0 means no limit",
@@ -55,7 +55,7 @@ impl Setting {
     pub fn dimensions(self) -> &'static [Dimension] {
         match self {
             Self::MoveTarget
-            | Self::HomeWay
+            | Self::HomeOffset
             | Self::HomeCoordinate
             | Self::SoftLimitPos
             | Self::SoftLimitNeg => &[Dimension::Position],

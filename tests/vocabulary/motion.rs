@@ -107,7 +107,7 @@ fn ordinary(setting: Setting) -> &'static [(&'static str, i64)] {
         Setting::HomeFast | Setting::HomeSlow | Setting::HomeAccel | Setting::HomeCoordinate => {
             &[("T101", 13)]
         }
-        Setting::HomeWay => &[("T101", 13), ("P041", 6)],
+        Setting::HomeOffset => &[("T101", 13), ("P041", 6)],
         Setting::HomeCollision => &[("P030", 1)],
         Setting::HomeTimeLimit => &[("P030", 2)],
         Setting::SoftLimitPos => &[("P042", 0x20), ("P044", 50_000)],

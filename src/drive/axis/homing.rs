@@ -127,7 +127,7 @@ fn with_numbers(
         fast: settings.speed(Setting::HomeFast).abs(),
         slow: settings.speed(Setting::HomeSlow).abs(),
         accel: settings.slope(Setting::HomeAccel).unwrap_or(Slope::Rate(0.0)),
-        way: settings.way(Setting::HomeWay).filter(|_| finish.go).unwrap_or(0),
+        way: settings.way(Setting::HomeOffset).filter(|_| finish.go).unwrap_or(0),
         collision: settings.counts(Setting::HomeCollision).unwrap_or(0),
         time_limit: time.and_then(|it| Duration::try_from_secs_f64(it * factor as f64).ok()),
         ..order

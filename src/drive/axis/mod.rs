@@ -320,7 +320,7 @@ impl Axis {
             _ => homing::FINISH,
         };
         let settings = self.settings.axis(cx.registers, Moment::UnderWay);
-        let way = settings.way(Setting::HomeWay).unwrap_or(0);
+        let way = settings.way(Setting::HomeOffset).unwrap_or(0);
         let goes_on = finish.go && !finish.of_origin;
         let point = if goes_on { origin.saturating_add(way) } else { origin };
         let coordinate = settings.way(Setting::HomeCoordinate).unwrap_or(0);

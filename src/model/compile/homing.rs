@@ -157,7 +157,7 @@ fn check_settings(homing: &HomingRules, numbers: &Numbers, path: &Path, names: &
         (Setting::HomeFast, goes || any(|it| it.pace == Pace::Fast), true),
         (Setting::HomeSlow, refined || any(|it| it.pace == Pace::Slow), true),
         (Setting::HomeAccel, moves, false),
-        (Setting::HomeWay, goes, true),
+        (Setting::HomeOffset, goes, true),
         (Setting::HomeCoordinate, finishes.iter().any(sets), true),
         (Setting::HomeCollision, any(|it| it.until == Until::Collision), true),
         (Setting::HomeTimeLimit, moves, false),

@@ -55,7 +55,7 @@ const KINDS: [MotionKind; 7] = [
             Setting::HomeFast,
             Setting::HomeSlow,
             Setting::HomeAccel,
-            Setting::HomeWay,
+            Setting::HomeOffset,
             Setting::HomeCoordinate,
             Setting::HomeCollision,
             Setting::HomeTimeLimit,

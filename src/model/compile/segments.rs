@@ -228,7 +228,7 @@ fn without_interrupt(wired: &Wired, names: &mut Names) {
     }
 }
 
-/// Compiles the segments one by one. What is wrong with several of them is told of the first.
+/// Compiles the segments one by one. A mistake shared by several of them is reported for the first.
 fn each<T>(
     numbers: RangeInclusive<u16>,
     names: &mut Names,
