@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawBench {
-    /// The seed of the run; `--seed` wins over it. Default: drawn and printed.
+    /// Seed of the run; `--seed` takes precedence. Default: random, and printed.
     pub seed: Option<u64>,
     /// The lines.
     pub lines: Vec<RawBenchLine>,
@@ -22,9 +22,9 @@ pub struct RawBench {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawBenchLine {
-    /// Its name in the log; default `line-1`, `line-2` ...
+    /// Name in the log; default `line-1`, `line-2` ...
     pub name: Option<String>,
-    /// A pseudo-terminal of our own: the path of a symlink to it, relative to this file, or `auto` for none.
+    /// A new pseudo-terminal: the path of a symlink to it, relative to this file, or `auto` for no symlink.
     pub pty: Option<String>,
     /// A serial device.
     pub serial: Option<String>,
@@ -34,32 +34,32 @@ pub struct RawBenchLine {
     pub rtu_over_tcp: Option<String>,
     /// Several ports onto the same drives, such as a serial line and a TCP gateway.
     pub ports: Option<Vec<RawPort>>,
-    /// Speed and character format, `9600-8N2`; every drive on the line is set to it. Default: what the
-    /// first drive's own parameters say.
+    /// Baud rate and character format, `9600-8N2`; all drives on the line are set to it. Default: from the parameters
+    /// of the first drive.
     pub settings: Option<String>,
-    /// ASCII framing instead of RTU. Default: what the first drive's own parameters say.
+    /// ASCII framing instead of RTU. Default: from the parameters of the first drive.
     pub ascii: Option<bool>,
-    /// End RTU frames by silence alone, as the standard says, instead of closing a complete one at once.
+    /// End RTU frames only by t3.5 of silence, as in the standard, instead of accepting a complete frame immediately.
     #[serde(default)]
     pub strict: bool,
-    /// Only with `pty`: carry nothing while the master's port is set to another baud than the line, as a wire does.
-    /// Default: the log tells of it, and all bytes pass.
+    /// Only with `pty`: pass no bytes while the master's port is set to another baud rate than the line. Default: the
+    /// log reports it, and all bytes pass.
     #[serde(default)]
     pub match_baud: bool,
-    /// When replies leave; default `ideal`.
+    /// Reply timing; default `ideal`.
     #[serde(default)]
     pub pacing: RawPacing,
-    /// The latency timer of a USB adapter, `16ms`: it hands over 62 bytes at once, and fewer whenever that
-    /// timer ends, which runs freely. Default: there is no adapter.
+    /// Latency timer of a USB adapter, 1 ms to 255 ms: the adapter delivers 62 bytes at once, and fewer whenever its
+    /// free-running timer expires. Default: no adapter.
     pub chunk: Option<String>,
-    /// The master hears what it says, as on a 2-wire line whose receiver stays on.
+    /// Echo: the master receives its own bytes, as on a 2-wire line whose receiver stays enabled.
     #[serde(default)]
     pub echo: bool,
-    /// Another master and its units talk between our transactions. Default: nobody does.
+    /// Traffic of another master and its units between our transactions. Default: none.
     pub chatter: Option<RawChatter>,
     /// The drives.
     pub drives: Vec<RawBenchDrive>,
-    /// Communication faults: rules. Of all that hold for a request, the first acts.
+    /// Communication fault rules. Of all that match a request, the first acts.
     #[serde(default)]
     pub faults: Vec<RawFault>,
 }
@@ -68,7 +68,7 @@ pub struct RawBenchLine {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawPort {
-    /// A pseudo-terminal of our own: the path of a symlink to it, relative to this file, or `auto` for none.
+    /// A new pseudo-terminal: the path of a symlink to it, relative to this file, or `auto` for no symlink.
     pub pty: Option<String>,
     /// A serial device.
     pub serial: Option<String>,
@@ -90,15 +90,15 @@ impl RawBenchLine {
     }
 }
 
-/// When replies leave.
+/// Reply timing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawPacing {
-    /// As soon as a request is understood.
+    /// Immediately after the request.
     #[default]
     Ideal,
-    /// No earlier than the silence behind the request, the drive and the reply's characters take.
+    /// After the end-of-frame silence, the reply delay of the drive and the character times of the reply.
     Line,
 }
 
@@ -106,9 +106,9 @@ pub enum RawPacing {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawChatter {
-    /// Whom it asks; none of them is a drive of this line.
+    /// Unit addresses of its requests, 1 to 247; none of them may be a drive on this line.
     pub units: Vec<u8>,
-    /// From one conversation to the next, on average; default `50ms`.
+    /// Average interval between its transactions, 1 ms to 1 h; default `50ms`.
     pub every: Option<String>,
 }
 
@@ -116,23 +116,23 @@ pub struct RawChatter {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawBenchDrive {
-    /// A built-in model, a product, or the path of a model file relative to this file.
+    /// A built-in model, a product name, or the path of a model file relative to this file.
     pub model: String,
-    /// Unit address; of a drive with several stations the first one's. Default: the model's.
+    /// Unit address, 1 to 247; for a drive with several stations, that of the first one. Default: from the model.
     pub unit: Option<u8>,
-    /// The model's options, by name.
+    /// Choices of model options, by name.
     #[serde(default)]
     pub options: BTreeMap<String, String>,
-    /// Start values, by register: the row's name, or an address.
+    /// Initial values of registers, by name or address.
     #[serde(default, deserialize_with = "by_register")]
     pub set: BTreeMap<String, i64>,
-    /// The DIP switches as a number, SW1 being bit 0: those of the address, above them those of the speed where the
-    /// drive has such. Those of the speed, all off, are set to the line's.
+    /// Setting of the DIP switches as a number, SW1 being bit 0: those of the unit address, then those of the baud
+    /// rate where the drive has them. If the latter are all off, they are set to the baud rate of the line.
     pub switches: Option<u8>,
-    /// Input terminals that carry a signal from the start.
+    /// Input terminals that are active from the start.
     #[serde(default)]
     pub terminals: Vec<String>,
-    /// The machine on its axis.
+    /// Switches and stops along the axis.
     #[serde(default)]
     pub machine: RawMachine,
 }
@@ -154,24 +154,24 @@ fn by_register<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, i6
     Ok(values.map(named).collect())
 }
 
-/// The machine on the axis of a drive. Its positions are in its own coordinate, which homing never shifts.
+/// Switches and stops along the axis of a drive, in counts of a fixed coordinate that homing does not shift.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawMachine {
-    /// Where the axis stands at power-on, in counts; default 0.
+    /// Position of the axis at power-on, in counts; default 0.
     pub start: i32,
-    /// What the drive's position register says at power-on, in counts; default 0.
+    /// Value of the position register at power-on, in counts; default 0.
     pub position: i32,
-    /// The home switch is active from the first count to before the second; default: there is none.
+    /// The home switch is active from the first count up to, but not at, the second; default: no home switch.
     pub home: Option<[i32; 2]>,
-    /// The negative limit switch is active below this count; default: there is none.
+    /// The negative limit switch is active below this count; default: no such switch.
     pub negative_limit: Option<i32>,
-    /// The positive limit switch is active from this count on; default: there is none.
+    /// The positive limit switch is active from this count upwards; default: no such switch.
     pub positive_limit: Option<i32>,
-    /// The axis gets from the first count to the second and no further; default: it has no end.
+    /// Hard stops: the ends of travel; default: unlimited travel.
     pub hard_stop: Option<[i32; 2]>,
-    /// Index pulses of the encoder; default: one a revolution, one of them at 0.
+    /// Index pulses of the encoder; default: one per revolution, starting at count 0.
     pub index: Option<RawIndex>,
 }
 
@@ -179,9 +179,9 @@ pub struct RawMachine {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawIndex {
-    /// Counts from one to the next.
+    /// Counts between two pulses, at least 1.
     pub every: i32,
-    /// The count of one of them; default 0.
+    /// Position of one pulse, in counts; default 0.
     #[serde(default)]
     pub offset: i32,
 }

@@ -5,57 +5,57 @@ use serde::Deserialize;
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// A scenario: steps that happen one after the other, on each line for itself.
+/// A scenario: steps that are executed in order, separately for each line.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawScenario {
-    /// The run ends here, in emulated time (`60s`), and steps that have not come by then have failed. Default: never.
+    /// Emulated time at which the run ends (`60s`); steps not reached by then have failed. Default: no limit.
     pub limit: Option<String>,
-    /// The steps. Each waits until the one above it on its line is done.
+    /// The steps. Each begins when the previous step of its line is done.
     pub steps: Vec<RawScenarioStep>,
 }
 
-/// One step: what it waits for, what it does, and what it expects then. At most one of `at`, `wait`, `after` and
-/// `when` says what it waits for; without any it comes right behind the step above.
+/// A step: a trigger, orders, and expectations. At most one of `at`, `wait`, `after` and `when` is the trigger;
+/// without any, the step follows the previous one immediately.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawScenarioStep {
-    /// Its name in the log and in the report.
+    /// Name in the log and in the report.
     pub name: String,
-    /// The line that it is about. Default: the first of the bench.
+    /// The line it applies to. Default: the first line of the bench.
     pub line: Option<String>,
-    /// The drive that it is about, by the unit address it has at power-on. Default: the first of the line.
+    /// The drive it applies to, by its unit address at power-on. Default: the first drive on the line.
     pub unit: Option<u8>,
-    /// Wait for this emulated time since the run began: `5s`, `1500ms`, `2min`.
+    /// Wait until this emulated time since the start of the run: `5s`, `1500ms`, `2min`.
     pub at: Option<String>,
-    /// Wait so long after the step above was done.
+    /// Wait this long after the previous step was done.
     pub wait: Option<String>,
-    /// Wait for so many transactions after the step above was done.
+    /// Wait for a number of transactions after the previous step was done.
     pub after: Option<RawCount>,
-    /// Wait until this holds.
+    /// Wait until this condition is true.
     pub when: Option<RawCondition>,
-    /// Do it several times.
+    /// Repeat the orders.
     pub repeat: Option<RawStepRepeat>,
-    /// What is done, in this order: `terminal I1 on`, `hold overload on`, `fault lose_reply:every=10` ...
+    /// Orders, executed in this order: `terminal I1 on`, `hold overload on`, `fault lose_reply:every=10` ...
     #[serde(default, rename = "do")]
     pub orders: Vec<String>,
-    /// What has to hold then, all of it at once.
+    /// Conditions that must then be true, all at the same time.
     #[serde(default)]
     pub expect: Vec<RawCondition>,
-    /// It may take so long until all of it holds. Default: it must hold at once.
+    /// Time allowed until all conditions are true. Default: they must be true immediately.
     pub within: Option<String>,
 }
 
-/// Transactions: requests that a drive got and answered, refused ones too. Broadcasts are none.
+/// Transactions: requests that a drive received and answered or refused. Broadcasts do not count.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawCount {
-    /// How many, 1 or more.
+    /// Number of transactions, at least 1.
     pub n: u64,
     /// Only reads, or only writes. Default: any.
     #[serde(default)]
     pub kind: RawKind,
-    /// Only with this drive. Default: with any of the line.
+    /// Only with this drive. Default: any drive on the line.
     pub unit: Option<u8>,
 }
 
@@ -73,23 +73,23 @@ pub enum RawKind {
     Any,
 }
 
-/// Something that holds or does not: a signal, a quantity or a register, and what it has to be.
+/// A condition: a signal, a quantity or a register, and its expected value.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawCondition {
     /// The drive. Default: that of the step.
     pub unit: Option<u8>,
-    /// An output signal.
+    /// An output signal, which `is` `on` or `off`.
     pub signal: Option<String>,
-    /// A number that the drive computes, in the base unit of its dimension.
+    /// A value that the drive computes, in the base unit of its dimension: counts, rpm.
     pub quantity: Option<String>,
-    /// What a register shows: the row's name, or an address.
+    /// The value of a register, by name or address.
     pub register: Option<RawRegister>,
-    /// `on` or `off`, or the number that it is.
+    /// `on` or `off` for a signal, or a number to be equal to.
     pub is: Option<RawLevel>,
-    /// It is more than this.
+    /// Greater than this number.
     pub above: Option<i64>,
-    /// It is less than this.
+    /// Less than this number.
     pub below: Option<i64>,
 }
 
@@ -105,7 +105,7 @@ pub enum RawRegister {
     Name(String),
 }
 
-/// What something has to be.
+/// The expected value.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawLevel {

@@ -6,28 +6,28 @@ use std::collections::BTreeMap;
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// How the axis looks for its origin.
+/// Homing: how the axis finds its origin.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawHoming {
-    /// The row with the number of the method; default: there is one method.
+    /// The row that selects the method by number; without it there is exactly one method.
     pub method: Option<String>,
-    /// The methods, by number. Each number that the row can hold is here or in `no_steps`.
+    /// The methods, by number. Each value of the row must be listed here or in `no_steps`.
     pub methods: BTreeMap<i64, RawMethod>,
-    /// Numbers that the row can hold and that do nothing.
+    /// Values of the row without any effect.
     #[serde(default)]
     pub no_steps: Vec<i64>,
-    /// Where a row decides what starts a homing: `never`, `input`, `command` or `first_enable` by value.
+    /// A row that selects what starts a homing: `never`, `input`, `command` or `first_enable` by value.
     pub starter: Option<RawChosen<String>>,
-    /// What a limit on the way means: `turn` (default) or `alarm`.
+    /// Reaction to a limit: `turn` (default) or `alarm`.
     pub limit: Option<RawChoice<String>>,
-    /// What tells a homing that there is a limit: `switch` (default), `hard_stop` or `either`.
+    /// How a limit is detected: `switch` (default), `hard_stop` or `either`.
     pub limit_source: Option<RawChoice<String>>,
     /// Whether an index pulse refines the origin: `none` (default), `back` or `onward`.
     pub index: Option<RawChoice<String>>,
-    /// How the axis stands at the origin: `at_once` (default) or `ramp`.
+    /// How the axis stops at the origin: `at_once` (default) or `ramp`.
     pub stop: Option<String>,
-    /// What happens when the origin is found; default: the position register says 0.
+    /// What happens when the origin is found; default: the position register is set to 0.
     pub finish: Option<RawChoice<RawFinish>>,
     /// A row, or a digit of it, by which `home.time_limit` is multiplied unless it is 0.
     pub time_factor: Option<RawDigit>,
@@ -35,28 +35,28 @@ pub struct RawHoming {
     pub assumed: Option<String>,
 }
 
-/// Always the same, or as a row says.
+/// A fixed choice, or one made by a row.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawChoice<T> {
-    /// As a row says.
+    /// Selected by a row.
     #[serde(rename = "a map with register or codes")]
     Row(RawChosen<T>),
-    /// Always the same.
+    /// Fixed.
     #[serde(rename = "anything else")]
     Fixed(T),
 }
 
-/// A row, or one hex digit of it, whose values stand for something.
+/// A row, or one hex digit of it, and the meaning of its values.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RawChosen<T> {
     /// The row.
     pub register: String,
-    /// Which hex digit of it, from the right, from 0; default: the whole value.
+    /// Hex digit of the row, counted from the right from 0; default: the whole value.
     pub digit: Option<u8>,
-    /// What its values stand for.
+    /// Meaning of its values.
     pub codes: BTreeMap<i64, T>,
 }
 
@@ -66,39 +66,39 @@ pub struct RawChosen<T> {
 pub struct RawDigit {
     /// The row.
     pub register: String,
-    /// Which hex digit of it, from the right, from 0; default: the whole value.
+    /// Hex digit of the row, counted from the right from 0; default: the whole value.
     pub digit: Option<u8>,
 }
 
-/// A homing method. Without any steps the origin is where the axis stands.
+/// A homing method. Without any steps the origin is the current position.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawMethod {
-    /// The switch that decides where it begins: `home_switch`, `limit_pos` or `limit_neg`.
+    /// The switch that decides how it begins: `home_switch`, `limit_pos` or `limit_neg`.
     pub by: Option<String>,
-    /// The steps, where that switch is off at the start.
+    /// The steps if that switch is off at the start.
     pub steps: Vec<RawHomingStep>,
-    /// The steps that follow when the way of the first one ends at a limit instead.
+    /// The steps that follow if the first step ends at a limit.
     pub at_limit: Vec<RawHomingStep>,
-    /// The steps where the switch is on at the start.
+    /// The steps if the switch is on at the start.
     pub on: Vec<RawHomingStep>,
-    /// Does `index` of the homing count for this method? Default no.
+    /// Whether `index` of the homing applies to this method; default no.
     pub index: bool,
 }
 
-/// A homing step: go until something happens.
+/// A homing step: move until an end condition is met.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawHomingStep {
-    /// `pos` or `neg`.
+    /// Direction, `pos` or `neg`.
     pub go: RawWay,
-    /// `fast` or `slow`.
+    /// Speed, `fast` (`home.speed_fast`) or `slow` (`home.speed_slow`).
     pub at: String,
-    /// Until what: a switch and `on` or `off` (`home_switch on`), `index`, `index after home_switch off`,
-    /// `same index` (the one that ended an earlier step), or `collision`.
+    /// End condition: a switch and `on` or `off` (`home_switch on`), `index`, `index after home_switch off`, `same
+    /// index` (the one that ended an earlier step), or `collision`.
     pub to: String,
-    /// `ramp`: stand, then the next step. `keep`: the next step without stopping. `origin`: this is it.
+    /// `ramp`: stop, then the next step. `keep`: the next step without stopping. `origin`: this is the origin.
     pub then: String,
 }
 
@@ -118,13 +118,13 @@ pub enum RawWay {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RawFinish {
-    /// Go on by `home.way`? Default no.
+    /// Whether the axis then moves by `home.way`; default no.
     #[serde(default)]
     pub go: bool,
-    /// What the position register says then: `coordinate`, `zero`, `minus_coordinate`, `kept`,
+    /// Value of the position register afterwards: `coordinate`, `zero`, `minus_coordinate`, `kept`,
     /// `kept_plus_coordinate` or `kept_minus_coordinate`.
     pub position: String,
-    /// Does it say that of the origin, and not of where the axis stands in the end? Default no.
+    /// Whether that value is assigned to the origin, not to the final position; default no.
     #[serde(default)]
     pub of_origin: bool,
 }
@@ -134,7 +134,7 @@ pub struct RawFinish {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawLimits {
-    /// How it stops: `coast`, `quick` (default) or `ramp`.
+    /// How the axis stops: `coast`, `quick` (default) or `ramp`.
     pub stop: Option<RawChoice<String>>,
     /// When `limit.soft_pos` and `limit.soft_neg` are in force: `off`, `after_homing` or `always` (default).
     pub soft: Option<RawChoice<String>>,

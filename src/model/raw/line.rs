@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// How the drive talks: functions, limits, word order, refusals.
+/// Communication: functions, limits, word order, refusals.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawLine {
@@ -22,8 +22,7 @@ pub struct RawLine {
     /// Characters of silence that end an RTU frame when framing is strict; default 3.5.
     #[serde(default = "three_and_a_half")]
     pub silence: f64,
-    /// How long the drive takes to begin its reply once that silence is over; default 0. It counts where
-    /// a line paces replies.
+    /// Reply delay after that silence, at most 10 s; default 0. Only lines with `pacing: line` apply it.
     pub reply_after: Option<String>,
     /// Most registers in one read, 1..125; default 125.
     #[serde(default = "all_of_a_read")]
@@ -31,27 +30,27 @@ pub struct RawLine {
     /// Most registers in one write, 1..123; default 123.
     #[serde(default = "all_of_a_write")]
     pub max_write: u16,
-    /// Exception code that answers a frame with a wrong CRC. Default: no answer.
+    /// Exception code returned for a frame with a bad CRC, 1 to 127. Default: no reply.
     pub crc_error: Option<u8>,
-    /// How far the lengths inside a 0x10 request must agree; default `strict`.
+    /// How strictly the lengths in a 0x10 request are checked; default `strict`.
     #[serde(default)]
     pub length_check: RawLengthCheck,
-    /// Which word of a 32-bit pair stands at the lower address.
+    /// Which word of a 32-bit pair is at the lower address.
     pub word_order: RawWordOrder,
-    /// May a request touch one word of a pair alone? default `any`.
+    /// Whether a request may access a single word of a pair; default `any`.
     #[serde(default)]
     pub long_access: RawLongAccess,
-    /// What reading a write-only row gives; default `refused`.
+    /// Result of reading a write-only row; default `refused`.
     #[serde(default)]
     pub write_only_reads: RawWriteOnlyReads,
-    /// What reading an address without a row gives, where rows follow above it; default `refused`.
+    /// Result of reading an unmapped address below the last row; default `refused`.
     #[serde(default)]
     pub unlisted_reads: RawUnlistedReads,
-    /// How long the master may be silent: each request to this unit, refused or not, and each broadcast
-    /// starts the time anew; at its end alarm `comm_timeout` is raised. Default: for ever.
+    /// Communication watchdog: each request to this unit, refused or not, and each broadcast restarts it; when it
+    /// expires, alarm `comm_timeout` is raised. Default: none.
     pub timeout: Option<RawHold>,
-    /// Causes of refusal with the exception code that each answers with, tried top to bottom: of all
-    /// the causes that hold, the first in this list answers.
+    /// Refusal causes with their exception codes, in order of priority: of all causes that apply, the first in this
+    /// list is reported.
     pub refuse: Vec<BTreeMap<String, u8>>,
 }
 
@@ -67,8 +66,8 @@ fn all_of_a_write() -> u16 {
     123
 }
 
-/// Where the unit address comes from: switches if the model has them and they are not 0, else the
-/// register, and if that holds 0 as well, `zero`.
+/// Where the unit address comes from: the switches if the model has them and they are not 0, else the register, and if
+/// that is 0 as well, `zero`.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawUnit {
@@ -76,7 +75,7 @@ pub struct RawUnit {
     pub register: String,
     /// Number of DIP switches that can set the address; a bench sets them with `switches: N`, SW1 being its bit 0.
     pub switches: Option<u8>,
-    /// The address when register and switches say 0; default 0, which hears broadcasts only.
+    /// The address if register and switches are 0; default 0, which receives broadcasts only.
     #[serde(default)]
     pub zero: u8,
 }
@@ -87,12 +86,12 @@ pub struct RawUnit {
 pub struct RawBaud {
     /// The row.
     pub register: String,
-    /// Which hex digit of it, from the right, from 0; default: the whole value.
+    /// Hex digit of the row, counted from the right from 0; default: the whole value.
     pub digit: Option<u8>,
-    /// Bits per second by code.
+    /// Baud rate by code, 50 to 4000000.
     pub codes: BTreeMap<i64, u32>,
-    /// Number of DIP switches above those of the address that hold the code in place of the row. With them the row does
-    /// nothing, nor does that of `format`, which stays as it leaves the factory. Default: none.
+    /// Number of DIP switches, above those of the address, that set the code in place of the row. With them the rows
+    /// of `baud` and `format` have no effect, and the format is its factory value. Default: none.
     pub switches: Option<u8>,
 }
 
@@ -102,13 +101,13 @@ pub struct RawBaud {
 pub struct RawFormat {
     /// The row.
     pub register: String,
-    /// Which hex digit of it, from the right, from 0; default: the whole value.
+    /// Hex digit of the row, counted from the right from 0; default: the whole value.
     pub digit: Option<u8>,
     /// `[ascii ]DPS` by code: data bits, parity N, E or O, stop bits (`8E1`, `ascii 7E1`).
     pub codes: BTreeMap<i64, String>,
 }
 
-/// How far the lengths inside a 0x10 request must agree.
+/// How strictly the lengths in a 0x10 request are checked.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -120,14 +119,14 @@ pub enum RawLengthCheck {
     CountOnly,
 }
 
-/// Which word of a pair stands at the lower address: always the same, or as a register says.
+/// Which word of a pair is at the lower address: fixed, or selected by a register.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawWordOrder {
-    /// Always the same.
+    /// Fixed.
     #[serde(rename = "a string (high_word_first or low_word_first)")]
     Fixed(RawOrder),
-    /// As a register says.
+    /// Selected by a register.
     #[serde(rename = "a map (register, codes)")]
     Register {
         /// The row.
@@ -137,19 +136,19 @@ pub enum RawWordOrder {
     },
 }
 
-/// May a request touch one word of a pair alone?
+/// Whether a request may access a single word of a pair.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawLongAccess {
-    /// Yes; each word stands for itself.
+    /// Yes; words are accessed individually.
     #[default]
     Any,
     /// No: cause `split_long`.
     Whole,
 }
 
-/// What reading a write-only row gives.
+/// Result of reading a write-only row.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -161,12 +160,12 @@ pub enum RawWriteOnlyReads {
     Refused,
 }
 
-/// What reading an address without a row gives. A write to one, and a read beyond the last row, are refused in any case.
+/// Result of reading an unmapped address. A write to one, and a read above the last row, are always refused.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawUnlistedReads {
-    /// 0, so that a block may reach across it.
+    /// 0, so that block reads can span gaps.
     Zero,
     /// Cause `address`.
     #[default]

@@ -30,70 +30,69 @@ use schemars::JsonSchema;
 pub struct RawModel {
     /// Version of this format: 1.
     pub format: u32,
-    /// Who makes the drive and what it is called.
+    /// Vendor, name and products of the drive.
     pub model: RawIdentity,
     /// The manual that the tables were copied from.
     pub manual: RawManual,
-    /// Readings to choose from where the manual contradicts itself or is silent, by name.
+    /// Choices between readings where the manual contradicts itself or is silent, by name.
     #[serde(default)]
     pub options: BTreeMap<String, RawOption>,
-    /// How the drive talks: functions, limits, word order, refusals.
+    /// Communication: functions, limits, word order, refusals.
     pub line: RawLine,
-    /// Address windows onto the registers, by name. Without any there is one at 0 that writes RAM.
+    /// Address windows, by name. Without any there is one at base 0 that writes RAM.
     #[serde(default)]
     pub windows: BTreeMap<String, RawWindow>,
-    /// Several stations in one device, each with its own unit address and its own registers, in
-    /// order. Without any the device is one station.
+    /// Stations of a device, in order, each with its own unit address and registers. Without any, the device is a
+    /// single station.
     #[serde(default)]
     pub stations: Vec<RawStation>,
-    /// The rows of the manual's tables, by the manual's own name or, where it has none, by ours.
+    /// Rows of the register tables, by the name in the manual or, where it has none, by a name of your own.
     #[serde(default)]
     pub registers: BTreeMap<String, RawRow>,
     /// Rows that repeat at a fixed stride, by name of the group.
     #[serde(default)]
     pub repeats: BTreeMap<String, RawRowRepeat>,
-    /// One-word rows for every address of a span that no other row takes, by name of the area.
+    /// 16-bit rows for all addresses of a range that no other row uses, by name of the area.
     #[serde(default)]
     pub fill: BTreeMap<String, RawFill>,
-    /// Numbers that the drive computes or goes by, each with the row that holds it, by role. What an
-    /// output goes by may be a number with its unit too (`20 rpm`).
+    /// Computed values, settings and thresholds, by role, each with the row that holds it. A threshold can also be a
+    /// number with its unit (`20 rpm`).
     #[serde(default)]
     pub quantities: BTreeMap<String, RawQuantity>,
-    /// When a value counts that is written to the row of a setting, where the manual prints no effect time
-    /// (`applies` of the row) and `quantities` says no more: `live`, `at_order` (default) or `at_start`.
-    /// Limits that are watched (`limit.soft_pos`, `limit.soft_neg`) are live then.
+    /// Effect time of settings whose row has no `applies` and which have no `taken` in `quantities`: `live`,
+    /// `at_order` (default) or `at_start`. Soft limits (`limit.soft_pos`, `limit.soft_neg`) are then live.
     pub settings_taken: Option<String>,
-    /// Where signals come from and where they show.
+    /// Sources of input signals, and where output signals are shown.
     #[serde(default)]
     pub signals: RawSignals,
     /// When the drive is ready and what it does at power-on.
     #[serde(default)]
     pub servo: RawServo,
-    /// The axis, where something can move it.
+    /// The axis, if something can move it.
     pub axis: Option<RawAxis>,
-    /// How the axis looks for its origin.
+    /// Homing: how the axis finds its origin.
     pub homing: Option<RawHoming>,
     /// How limits stop the axis.
     pub limits: Option<RawLimits>,
     /// Alarms that the drive can raise, by cause.
     #[serde(default)]
     pub alarms: BTreeMap<String, RawAlarm>,
-    /// Rows that show the numbers of the alarms that were raised, newest first.
+    /// Rows with the numbers of past alarms, newest first.
     #[serde(default)]
     pub alarm_history: Vec<String>,
 }
 
-/// Who makes the drive and what it is called.
+/// Vendor, name and products of the drive.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawIdentity {
     /// The maker.
     pub vendor: String,
-    /// The name to ask for it by: lower case, digits and `-`.
+    /// Model name: lower-case letters, digits and `-`.
     pub name: String,
     /// One line for the list of models.
     pub about: String,
-    /// Product names that this model stands for; each is accepted wherever the model's name is.
+    /// Product names; each is accepted in place of the model name.
     #[serde(default)]
     pub products: Vec<String>,
 }
@@ -108,7 +107,7 @@ pub struct RawManual {
     pub rev: String,
 }
 
-/// Two or more readings of the manual, of which a user picks one with `--set NAME=CHOICE`.
+/// Two or more readings of the manual, selected with `--set NAME=CHOICE`.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawOption {
@@ -116,10 +115,10 @@ pub struct RawOption {
     pub about: String,
     /// Why the default is what it is: the printed evidence, or its absence.
     pub why: String,
-    /// The choice in force unless the user says otherwise.
+    /// The choice that applies by default.
     pub default: String,
-    /// The choices, by name: a fragment that is laid over this file when chosen (`{}`: the file as it
-    /// is). Maps are merged, everything else is replaced, `null` removes.
+    /// The choices, by name: each a fragment that is merged into this file (`{}`: no change). Maps are merged,
+    /// everything else is replaced, `null` removes.
     #[cfg_attr(
         feature = "cli",
         schemars(with = "BTreeMap<String, serde_json::Map<String, serde_json::Value>>")
@@ -133,9 +132,9 @@ pub struct RawOption {
 pub struct RawWindow {
     /// Added to a register's address to reach it through this window.
     pub base: u16,
-    /// First and last register address that the window shows; default: all of them.
+    /// First and last register address in the window; default: all of them.
     pub span: Option<[u16; 2]>,
-    /// What a write changes: `[ram]` is lost at power-off, `[ram, store]` is kept.
+    /// Where a write goes: `[ram]` is lost at power-off, `[ram, store]` is also stored in non-volatile memory.
     pub writes: Vec<RawLayer>,
 }
 
@@ -144,9 +143,9 @@ pub struct RawWindow {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawLayer {
-    /// The value in force, lost at power-off.
+    /// RAM: the value in force, lost at power-off.
     Ram,
-    /// The value that returns at power-on.
+    /// Non-volatile memory: the value restored at power-on.
     Store,
 }
 
@@ -154,9 +153,9 @@ pub enum RawLayer {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawStation {
-    /// The manual's name of it (`A`).
+    /// Name in the manual (`A`).
     pub name: String,
-    /// Start values that differ from the rows' own `init`, by row.
+    /// Factory values that differ from the `init` of the row, by row.
     #[serde(default)]
     pub init: BTreeMap<String, i64>,
 }

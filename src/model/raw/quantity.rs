@@ -1,31 +1,31 @@
-//! The row of a number, and when a value written to it counts.
+//! The row of a quantity, and when a written value takes effect.
 
 use serde::Deserialize;
 
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// The row that holds a number, or a number with its unit where an output goes by it.
+/// The row that holds a value, or for a threshold a number with its unit.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawQuantity {
     /// The row, or the number.
     #[serde(rename = "a string (a row)")]
     Register(String),
-    /// The row of a setting, and when its values count.
+    /// The row of a setting, and its effect time.
     #[serde(rename = "a map (register, taken)")]
     Setting(RawSetting),
 }
 
-/// The row of a setting, and when its values count.
+/// The row of a setting, and its effect time.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RawSetting {
     /// The row.
     pub register: String,
-    /// When a value counts that is written to it: `live`, `at_order` or `at_start`. Default: as the row's
-    /// `applies` says (`now` is `live`, `at_stop` is `at_start`), else as `settings_taken`.
+    /// Effect time: `live`, `at_order` or `at_start`. Default: from `applies` of the row (`now` is `live`, `at_stop`
+    /// is `at_start`), else `settings_taken`.
     pub taken: Option<String>,
 }
 

@@ -113,9 +113,9 @@ pub enum RawAccess {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawApplies {
-    /// At once.
+    /// Immediately.
     Now,
-    /// When the axis stands still.
+    /// At standstill.
     AtStop,
     /// At the next power-on.
     PowerOn,
@@ -135,7 +135,7 @@ pub enum RawLock {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawSim {
-    /// Stored and read back; moves nothing.
+    /// Stored and read back, without any other effect.
     None,
 }
 
@@ -152,8 +152,8 @@ pub enum RawOrder {
 
 /// A group of rows that repeats at a fixed stride.
 ///
-/// In the rows' keys and texts `{n}` stands for the number of the copy, `{n:02}` for the same with
-/// leading zeros. A row's `at` is the address of the first copy.
+/// In keys and texts of the rows, `{n}` is the number of the copy and `{n:02}` the same with leading zeros. `at` is
+/// the address of the first copy.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawRowRepeat {
@@ -165,7 +165,7 @@ pub struct RawRowRepeat {
     pub registers: BTreeMap<String, RawRow>,
 }
 
-/// One-word rows for all the addresses of a span that no other row takes.
+/// 16-bit rows for all addresses of a range that no other row uses.
 ///
 /// In `id` and the row's texts `{n}` stands for the address in decimal, `{n:03}` for the same with
 /// leading zeros, `{n:04X}` for the address in hex.

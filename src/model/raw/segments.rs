@@ -1,4 +1,4 @@
-//! Motions by number: tables of segments that signals select and start, and chains of them.
+//! Segments: numbered motions, selected and started by signals, and chains of them.
 
 use super::{RawChoice, RawQuantity};
 use serde::Deserialize;
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// Motions by number, which signals select and start.
+/// Numbered motions, selected and started by signals.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawSegments {
-    /// Moves: `segment_start` starts the one selected.
+    /// Moves, started by `segment_start`.
     pub position: Option<RawPositionSegments>,
-    /// Runs: `segment_run` starts the one selected.
+    /// Runs, started by `segment_run`.
     pub velocity: Option<RawVelocitySegments>,
 }
 
@@ -22,15 +22,15 @@ pub struct RawSegments {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawPositionSegments {
-    /// Numbers of the first and of the last.
+    /// Numbers of the first and the last segment.
     pub n: [u16; 2],
-    /// What a segment goes by, out of the settings of a move, each with its row; `{n}` in the name of a row
-    /// is the number of the segment.
+    /// Settings of a segment, under the names of those of a move, each with its row; `{n}` in the name of a row is the
+    /// number of the segment.
     pub quantities: BTreeMap<String, RawQuantity>,
-    /// Are targets ways or positions: `relative` (default), `absolute` or, for an empty segment, `none`. In the
-    /// name of a row `{n}` is the number of the segment; a value without a code is an empty segment too.
+    /// Whether targets are distances or positions: `relative` (default), `absolute` or, for an empty segment, `none`.
+    /// In the name of a row `{n}` is the number of the segment; a value without a code also means an empty segment.
     pub kind: Option<RawChoice<String>>,
-    /// How one segment follows another. Left out: none does.
+    /// When the next segment follows. Default: never.
     pub chain: Option<RawChain>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
@@ -40,24 +40,24 @@ pub struct RawPositionSegments {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawVelocitySegments {
-    /// Numbers of the first and of the last.
+    /// Numbers of the first and the last segment.
     pub n: [u16; 2],
-    /// What a segment goes by, out of the settings of a run, each with its row; `{n}` in the name of a row
-    /// is the number of the segment.
+    /// Settings of a segment, under the names of those of a run, each with its row; `{n}` in the name of a row is the
+    /// number of the segment.
     pub quantities: BTreeMap<String, RawQuantity>,
-    /// Does a segment last while `segment_run` is active, `level` (default), or from its edge on, `edge`?
+    /// Whether a segment runs while `segment_run` is active, `level` (default), or from its rising edge on, `edge`.
     pub trigger: Option<RawChoice<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }
 
-/// How one segment follows another. In the name of each row `{n}` is the number of the segment.
+/// When the next segment follows. In the name of each row `{n}` is the number of the segment.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawChain {
     /// The row with the number of the next segment; a number that no segment has ends the chain.
     pub next: String,
-    /// The row that says what a segment waits for. While it says nothing, the chain ends.
+    /// The row with the conditions for the next segment. Without any condition, the chain ends.
     pub rule: String,
     /// The conditions of a segment.
     pub conditions: Vec<RawChainCondition>,
@@ -66,10 +66,10 @@ pub struct RawChain {
     /// Unit of a condition's value, by condition (`ms`, `1000 counts`).
     #[serde(default)]
     pub units: BTreeMap<String, String>,
-    /// Bit of the rule: wait for all conditions, not for the first. Left out: for the first.
+    /// Bit of the rule: wait for all conditions instead of any one. Default: any one.
     pub all: Option<u8>,
-    /// Bit of the rule: go on as soon as the conditions are met, in motion too. Without conditions, go on in
-    /// position. Left out: go on from standstill.
+    /// Bit of the rule: continue as soon as the conditions are met, also during motion; without conditions, continue
+    /// in position. Default: continue from standstill.
     pub through: Option<u8>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
@@ -85,13 +85,13 @@ pub struct RawChainCondition {
     pub value: String,
 }
 
-/// Interrupt positioning: a move that takes the place of a motion under way when `interrupt_start` rises.
+/// Interrupt positioning: a move that replaces the motion in progress when `interrupt_start` rises.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawInterrupt {
-    /// What it goes by, out of the settings of a move, each with its row; the target is a way.
+    /// Its settings, under the names of those of a move, each with its row; the target is a distance.
     pub quantities: BTreeMap<String, RawQuantity>,
-    /// May it start: `off`, `free` (default) or `locks`.
+    /// Whether it is locked: `off`, `free` (default) or `locks`.
     pub rule: Option<RawChoice<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 #[cfg(feature = "cli")]
 use schemars::JsonSchema;
 
-/// Where signals come from and where they show.
+/// Sources of input signals, and where output signals are shown.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
@@ -23,10 +23,10 @@ pub struct RawSignals {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawInputs {
-    /// Function number -> input signal, or `not_simulated` and the manual's name of a function that does nothing; used by
+    /// Function number -> input signal, or `not_simulated` and the name of a function without effect; used by
     /// `terminals` and `words`.
     pub codes: BTreeMap<u16, String>,
-    /// Switches of the machine that reach the drive by a way of their own, not by one of `terminals`.
+    /// Switches of the machine with dedicated pins, not wired to one of `terminals`.
     pub machine: Vec<String>,
     /// Physical input terminals.
     pub terminals: Option<RawTerminals>,
@@ -34,10 +34,10 @@ pub struct RawInputs {
     pub words: Option<RawInputWords>,
     /// Rows whose bits are signals: row -> bit -> signal, or `not_simulated` and the manual's name.
     pub bits: BTreeMap<String, BTreeMap<u8, String>>,
-    /// Rows that show, bit by bit, what has come of such a row: monitor -> row of `bits`. A bit without a signal shows as it
-    /// was written.
+    /// Rows that show the effective state of such a row: monitor -> row of `bits`. A bit without a signal is shown as
+    /// written.
     pub monitors: BTreeMap<String, String>,
-    /// Settings that take the signals of such bits away: row -> bit -> setting. While that is not 0, the bit does not act.
+    /// Settings that override such bits: row -> bit -> setting. While the setting is not 0, the bit has no effect.
     #[serde(alias = "claims")]
     pub bit_overrides: BTreeMap<String, BTreeMap<u8, RawDigit>>,
     /// Rows in which writing a value triggers an action: row -> value -> action. Every write triggers.
@@ -50,9 +50,9 @@ pub struct RawInputs {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawTriggers {
-    /// Bit -> action. Of several bits at once, the action that stands first in the catalogue acts alone.
+    /// Bit -> action. If several bits are set, only the action listed first in the catalogue is executed.
     pub bits: BTreeMap<u8, String>,
-    /// Bit -> what a 1 there says about the action.
+    /// Bit -> modifier of the action.
     #[serde(default)]
     pub modifiers: BTreeMap<u8, String>,
 }
@@ -62,8 +62,8 @@ pub struct RawTriggers {
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(default)]
 pub struct RawOutputs {
-    /// Function number -> output signal, `not` and a signal, or `not_simulated` and the manual's name of a function that
-    /// never shows; used by `terminals` and `words`.
+    /// Function number -> output signal, `not` and a signal, or `not_simulated` and the name of a function that is
+    /// always off; used by `terminals` and `words`.
     pub codes: BTreeMap<u16, String>,
     /// Physical output terminals.
     pub terminals: Option<RawTerminals>,
@@ -79,7 +79,7 @@ pub struct RawOutputs {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawTerminals {
-    /// What a terminal's name begins with (`DI`); its number follows.
+    /// Prefix of the terminal names (`DI`), followed by the number.
     pub prefix: String,
     /// Number of the first terminal.
     pub first: u8,
@@ -126,17 +126,17 @@ pub struct RawInputWords {
     /// Function number -> position (16 times the word plus the bit), where it is not the number itself.
     #[serde(default)]
     pub positions: BTreeMap<u16, u16>,
-    /// How long one write of a word holds; after that the word returns to 0. Default: for ever.
+    /// Hold time: the word is reset to 0 unless it is written again in time. Default: no watchdog.
     pub hold: Option<RawHold>,
 }
 
-/// A row with the time in which a master must do something again.
+/// A row with the time of a watchdog.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawHold {
     /// The row with the time, in its unit.
     pub register: String,
-    /// The time that 0 stands for (`500ms`); default: for ever.
+    /// The time that 0 stands for (`500ms`); by default 0 disables the watchdog.
     pub zero: Option<String>,
 }
 
@@ -161,7 +161,7 @@ pub struct RawOutputWords {
 pub struct RawServo {
     /// Time from power-on until the drive is ready (`1s`); default 0.
     pub ready_after: Option<String>,
-    /// Is the power stage on from the start, without a signal? default no.
+    /// Whether the power stage is on from power-on, without a signal; default no.
     pub enabled_at_power_on: bool,
     /// What was assumed, and why.
     pub assumed: Option<String>,
@@ -171,39 +171,38 @@ pub struct RawServo {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawAxis {
-    /// Counts of the drive for one revolution: a number, or the row that holds it.
+    /// Counts per revolution: a number, or the row that holds it.
     pub counts_per_rev: RawCounts,
-    /// Increments of the encoder for one revolution, of which rows in `inc` count: a number, or the row that holds it.
-    /// While that holds 0 they are counts.
+    /// Encoder increments per revolution, the unit `inc` of rows: a number, or the row that holds it. If it is 0,
+    /// increments are counts.
     pub encoder: Option<RawCounts>,
-    /// How long the axis runs out when its power stage goes off while it moves, from whatever speed
-    /// (`200ms`, which is the default); `0s` stands at once.
+    /// How long the axis coasts, from any speed, when its power stage is switched off during motion; default `200ms`;
+    /// with `0s` it stops immediately.
     pub coast: Option<String>,
-    /// Motions by number, which signals select and start.
+    /// Numbered motions, selected and started by signals.
     #[serde(default)]
     pub segments: RawSegments,
-    /// A move that takes the place of a motion under way.
+    /// A move that replaces the motion in progress.
     pub interrupt: Option<RawInterrupt>,
-    /// What becomes of what the axis is behind its command when `command_inhibit` rises: `clears` (default) or `keeps`.
+    /// What happens to the following error when `command_inhibit` rises: `clears` (default) or `keeps`.
     pub inhibit: Option<RawChoice<String>>,
-    /// Gain of the position controller, 1/s: in a move at constant speed the axis is that speed divided by
-    /// this behind its command. Default: it follows without delay, as a motor without an encoder is taken to.
+    /// Gain of the position controller, 0.1 to 10000 1/s: in a move at constant speed the following error is the speed
+    /// divided by the gain. Default: no following error, as for a motor without an encoder.
     pub position_gain: Option<f64>,
     /// Pole pairs of the motor, for `encoder.electrical_angle`.
     pub pole_pairs: Option<u16>,
-    /// A row: while it is not 0, positive counts go the negative way of a bench's machine. A change counts once
-    /// the axis stands.
+    /// A row: while it is not 0, positive counts move in the negative direction of the machine. A change takes effect
+    /// at standstill.
     pub reversed: Option<String>,
-    /// The gear between units of position and counts. Default: 1 to 1.
+    /// Electronic gear between units of position and counts. Default: 1 to 1.
     pub gear: Option<RawGear>,
-    /// Where a row decides what `rpm` in the units of rows stands for: `rpm` or `0.1 rpm`, say, by value.
+    /// A row that selects the meaning of `rpm` in the units of rows, by value: `rpm`, `0.1 rpm`.
     pub speed_unit: Option<RawChosen<String>>,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }
 
-/// The gear between units of position, in which targets and positions are, and counts: a unit is numerator by
-/// denominator counts. Neither row can hold 0.
+/// Electronic gear: one unit of position is numerator / denominator counts. Neither row can be 0.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawGear {
@@ -217,10 +216,10 @@ pub struct RawGear {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
 pub enum RawCounts {
-    /// This many.
+    /// A number.
     #[serde(rename = "a number of counts")]
     Number(u32),
-    /// As many as the row says.
+    /// The value of a row.
     #[serde(rename = "a string (a row)")]
     Row(String),
 }
@@ -229,31 +228,32 @@ pub enum RawCounts {
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 pub struct RawAlarm {
-    /// The vendor's number, as `alarm.code` shows it.
+    /// The vendor's alarm number, as shown by `alarm.code`; not 0.
     pub code: u16,
-    /// Does a reset clear it? Otherwise only a power cycle does. Default yes.
+    /// Whether a reset clears it; otherwise only a power cycle does. Default yes.
     #[serde(default = "yes")]
     pub resettable: bool,
-    /// What `bus.voltage` shows while the cause stands (`180 V`); default: what it shows anyway.
+    /// Value of `bus.voltage` while the cause is present (`180 V`); default: unchanged.
     pub bus_voltage: Option<String>,
-    /// What an axis that moves does when the alarm is raised; default `coast`.
+    /// Reaction of a moving axis to the alarm; default `coast`.
     #[serde(default)]
     pub stop: RawAlarmStop,
     /// What was assumed, and why.
     pub assumed: Option<String>,
 }
 
-/// What an axis that moves does when an alarm is raised.
+/// Reaction of a moving axis to an alarm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "cli", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RawAlarmStop {
-    /// Its power stage goes off and it runs out.
+    /// The power stage is switched off, and the axis coasts.
     #[default]
     Coast,
-    /// It slows down with `alarm.decel`, or without such a row as the motion itself would; then its power stage goes off.
+    /// The axis decelerates with `alarm.decel`, or without such a row like the motion itself; then the power stage is
+    /// switched off.
     Ramp,
-    /// It stands at once; then its power stage goes off.
+    /// The axis stops immediately; then the power stage is switched off.
     Quick,
 }
 
