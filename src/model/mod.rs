@@ -9,7 +9,6 @@ pub mod builtin;
 mod compile;
 mod line;
 mod load;
-mod options;
 pub mod raw;
 mod row;
 mod wiring;
@@ -17,8 +16,7 @@ mod wiring;
 pub use crate::vocabulary::RowId;
 pub use compile::duration;
 pub use line::{LineRules, LongAccess, Refuse, RegisterOrder, UnitRule, WireFormat, WordOrder};
-pub use load::{Choices, check, load};
-pub use options::OptionInfo;
+pub use load::{Choices, OptionInfo, check, load};
 pub use row::{Access, Applies, Layer, Located, Map, Row, RowKind, Window};
 pub use wiring::*;
 

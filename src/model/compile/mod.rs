@@ -7,7 +7,6 @@
 
 mod alarms;
 mod axis;
-mod commands;
 mod expand;
 mod homing;
 mod inputs;
@@ -64,8 +63,8 @@ pub(super) fn compile(
     let input_bits = inputs::bits(inputs, &mut uses, &mut absent, names);
     inputs::monitors(inputs, &input_bits, &mut uses, names);
     let bit_overrides = inputs::overrides(inputs, &mut uses, names);
-    let commands = commands::commands(inputs, &mut uses, names);
-    let triggers = commands::triggers(inputs, &mut uses, names);
+    let commands = inputs::commands(inputs, &mut uses, names);
+    let triggers = inputs::triggers(inputs, &mut uses, names);
     let output_codes = outputs::codes(outputs, &mut absent, names);
     let output_terminals =
         outputs::terminals(outputs, &output_codes, &mut uses, &mut absent, names);

@@ -3,19 +3,17 @@
 //! These structs mirror the file key for key and decide nothing; `compile` resolves them. Every key
 //! that they accept changes something that a test can see.
 
+mod axis;
 mod homing;
 mod line;
-mod quantity;
 mod row;
-mod segments;
-mod wiring;
+mod signals;
 
+pub use axis::*;
 pub use homing::*;
 pub use line::*;
-pub use quantity::*;
 pub use row::*;
-pub use segments::*;
-pub use wiring::*;
+pub use signals::*;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -147,6 +145,56 @@ pub enum RawLayer {
     Ram,
     /// Non-volatile memory: the value restored at power-on.
     Store,
+}
+
+/// When the drive is ready and what it does at power-on.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(default)]
+pub struct RawServo {
+    /// Time from power-on until the drive is ready (`1s`); default 0.
+    pub ready_after: Option<String>,
+    /// Whether the power stage is on from power-on, without a signal; default no.
+    pub enabled_at_power_on: bool,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// An alarm that the drive can raise.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+pub struct RawAlarm {
+    /// The vendor's alarm number, as shown by `alarm.code`; not 0.
+    pub code: u16,
+    /// Whether a reset clears it; otherwise only a power cycle does. Default yes.
+    #[serde(default = "yes")]
+    pub resettable: bool,
+    /// Value of `bus.voltage` while the cause is present (`180 V`); default: unchanged.
+    pub bus_voltage: Option<String>,
+    /// Reaction of a moving axis to the alarm; default `coast`.
+    #[serde(default)]
+    pub stop: RawAlarmStop,
+    /// What was assumed, and why.
+    pub assumed: Option<String>,
+}
+
+/// Reaction of a moving axis to an alarm.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "cli", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum RawAlarmStop {
+    /// The power stage is switched off, and the axis coasts.
+    #[default]
+    Coast,
+    /// The axis decelerates with `alarm.decel`, or without such a row like the motion itself; then the power stage is
+    /// switched off.
+    Ramp,
+    /// The axis stops immediately; then the power stage is switched off.
+    Quick,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// One station of a device with several.

@@ -31,6 +31,13 @@ pub struct HomingRules {
 }
 
 impl HomingRules {
+    /// What a limit means where a file leaves it out.
+    pub const LIMIT: LimitRule = LimitRule::Turn;
+    /// What tells of a limit where a file leaves it out.
+    pub const SOURCE: LimitSource = LimitSource::Switch;
+    /// Whether an index pulse counts where a file leaves it out.
+    pub const INDEX: IndexRule = IndexRule::None;
+
     /// The rows that it goes by, when it starts.
     pub fn rows(&self) -> impl Iterator<Item = RowId> + '_ {
         let choices = [
@@ -55,14 +62,4 @@ pub struct Finish {
     pub position: OriginPosition,
     /// Does it say that of the origin, and not of where the axis stands in the end?
     pub of_origin: bool,
-}
-
-/// The defaults of what a file leaves out.
-impl HomingRules {
-    /// What a limit means.
-    pub const LIMIT: LimitRule = LimitRule::Turn;
-    /// What tells of a limit.
-    pub const SOURCE: LimitSource = LimitSource::Switch;
-    /// Whether an index pulse counts.
-    pub const INDEX: IndexRule = IndexRule::None;
 }

@@ -1,6 +1,6 @@
-//! Wiring: which row, bit or terminal carries which signal. Roles by name, no addresses.
+//! Signals: which row, bit or terminal carries which one. Roles by name, no addresses.
 
-use super::{RawChoice, RawChosen, RawDigit, RawInterrupt, RawSegments};
+use super::RawDigit;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -152,113 +152,6 @@ pub struct RawOutputWords {
     /// Function number -> position (16 times the word plus the bit), where it is not the number itself.
     #[serde(default)]
     pub positions: BTreeMap<u16, u16>,
-}
-
-/// When the drive is ready and what it does at power-on.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(default)]
-pub struct RawServo {
-    /// Time from power-on until the drive is ready (`1s`); default 0.
-    pub ready_after: Option<String>,
-    /// Whether the power stage is on from power-on, without a signal; default no.
-    pub enabled_at_power_on: bool,
-    /// What was assumed, and why.
-    pub assumed: Option<String>,
-}
-
-/// The axis that the drive moves.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawAxis {
-    /// Counts per revolution: a number, or the row that holds it.
-    pub counts_per_rev: RawCounts,
-    /// Encoder increments per revolution, the unit `inc` of rows: a number, or the row that holds it. If it is 0,
-    /// increments are counts.
-    pub encoder: Option<RawCounts>,
-    /// How long the axis coasts, from any speed, when its power stage is switched off during motion; default `200ms`;
-    /// with `0s` it stops immediately.
-    pub coast: Option<String>,
-    /// Numbered motions, selected and started by signals.
-    #[serde(default)]
-    pub segments: RawSegments,
-    /// A move that replaces the motion in progress.
-    pub interrupt: Option<RawInterrupt>,
-    /// What happens to the following error when `command_inhibit` rises: `clears` (default) or `keeps`.
-    pub inhibit: Option<RawChoice<String>>,
-    /// Gain of the position controller, 0.1 to 10000 1/s: in a move at constant speed the following error is the speed
-    /// divided by the gain. Default: no following error, as for a motor without an encoder.
-    pub position_gain: Option<f64>,
-    /// Pole pairs of the motor, for `encoder.electrical_angle`.
-    pub pole_pairs: Option<u16>,
-    /// A row: while it is not 0, positive counts move in the negative direction of the machine. A change takes effect
-    /// at standstill.
-    pub reversed: Option<String>,
-    /// Electronic gear between units of position and counts. Default: 1 to 1.
-    pub gear: Option<RawGear>,
-    /// A row that selects the meaning of `rpm` in the units of rows, by value: `rpm`, `0.1 rpm`.
-    pub speed_unit: Option<RawChosen<String>>,
-    /// What was assumed, and why.
-    pub assumed: Option<String>,
-}
-
-/// Electronic gear: one unit of position is numerator / denominator counts. Neither row can be 0.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawGear {
-    /// The row with the numerator.
-    pub numerator: String,
-    /// The row with the denominator.
-    pub denominator: String,
-}
-
-/// Counts for one revolution.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema), schemars(untagged))]
-pub enum RawCounts {
-    /// A number.
-    #[serde(rename = "a number of counts")]
-    Number(u32),
-    /// The value of a row.
-    #[serde(rename = "a string (a row)")]
-    Row(String),
-}
-
-/// An alarm that the drive can raise.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-pub struct RawAlarm {
-    /// The vendor's alarm number, as shown by `alarm.code`; not 0.
-    pub code: u16,
-    /// Whether a reset clears it; otherwise only a power cycle does. Default yes.
-    #[serde(default = "yes")]
-    pub resettable: bool,
-    /// Value of `bus.voltage` while the cause is present (`180 V`); default: unchanged.
-    pub bus_voltage: Option<String>,
-    /// Reaction of a moving axis to the alarm; default `coast`.
-    #[serde(default)]
-    pub stop: RawAlarmStop,
-    /// What was assumed, and why.
-    pub assumed: Option<String>,
-}
-
-/// Reaction of a moving axis to an alarm.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-#[cfg_attr(feature = "cli", derive(JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum RawAlarmStop {
-    /// The power stage is switched off, and the axis coasts.
-    #[default]
-    Coast,
-    /// The axis decelerates with `alarm.decel`, or without such a row like the motion itself; then the power stage is
-    /// switched off.
-    Ramp,
-    /// The axis stops immediately; then the power stage is switched off.
-    Quick,
-}
-
-fn yes() -> bool {
-    true
 }
 
 #[cfg(test)]
