@@ -1,6 +1,7 @@
 //! From the text of a model file to a [`Model`], or to everything that is wrong with it. An option is one of several
 //! readings, chosen by name, as a fragment that is laid over the file.
 
+use super::OptionInfo;
 use super::raw::RawOption;
 use super::{Model, compile};
 use crate::problem::decode::{decode, named};
@@ -96,36 +97,6 @@ impl ModelFile {
             problems.iter_mut().for_each(|it| it.path = fragment.join(&it.path));
         }
         Err(problems)
-    }
-}
-
-/// An option of a model, and what was chosen.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OptionInfo {
-    /// Name as in `--set NAME=CHOICE`.
-    pub name: String,
-    /// What it is about.
-    pub about: String,
-    /// Why the default is what it is.
-    pub why: String,
-    /// The choice in force unless told otherwise.
-    pub default: String,
-    /// The choice in force.
-    pub chosen: String,
-    /// Names of the choices, the default included.
-    pub choices: Vec<String>,
-}
-
-impl OptionInfo {
-    fn new(name: &str, raw: &RawOption, chosen: &str) -> Self {
-        Self {
-            name: name.into(),
-            about: raw.about.clone(),
-            why: raw.why.clone(),
-            default: raw.default.clone(),
-            chosen: chosen.into(),
-            choices: raw.choices.keys().cloned().collect(),
-        }
     }
 }
 

@@ -16,9 +16,11 @@ mod wiring;
 pub use crate::vocabulary::RowId;
 pub use compile::duration;
 pub use line::{LineRules, LongAccess, Refuse, RegisterOrder, UnitRule, WireFormat, WordOrder};
-pub use load::{Choices, OptionInfo, check, load};
+pub use load::{Choices, check, load};
 pub use row::{Access, Applies, Layer, Located, Map, Row, RowKind, Window};
 pub use wiring::*;
+
+use raw::RawOption;
 
 /// One drive of one vendor, as data.
 #[derive(Debug)]
@@ -43,6 +45,36 @@ pub struct Model {
     pub stations: Vec<Station>,
     /// Which row, bit and terminal carries what.
     pub wiring: Wiring,
+}
+
+/// An option of a model, and what was chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OptionInfo {
+    /// Name as in `--set NAME=CHOICE`.
+    pub name: String,
+    /// What it is about.
+    pub about: String,
+    /// Why the default is what it is.
+    pub why: String,
+    /// The choice in force unless told otherwise.
+    pub default: String,
+    /// The choice in force.
+    pub chosen: String,
+    /// Names of the choices, the default included.
+    pub choices: Vec<String>,
+}
+
+impl OptionInfo {
+    fn new(name: &str, raw: &RawOption, chosen: &str) -> Self {
+        Self {
+            name: name.into(),
+            about: raw.about.clone(),
+            why: raw.why.clone(),
+            default: raw.default.clone(),
+            chosen: chosen.into(),
+            choices: raw.choices.keys().cloned().collect(),
+        }
+    }
 }
 
 /// One station of a device: what answers to one unit address.
