@@ -19,7 +19,7 @@ pub(in crate::drive) fn change(
     let method = axis.method;
     Some(match effect {
         Effect::Ready => DriveEvent::Ready,
-        Effect::Enabled(on) => DriveEvent::Servo { on: on },
+        Effect::Enabled(on) => DriveEvent::Servo { on },
         Effect::AlarmRaised { cause, code } => DriveEvent::Alarm { cause, code },
         Effect::AlarmCleared => DriveEvent::AlarmCleared,
         Effect::MoveStarted(to) => match segment {
