@@ -4,18 +4,14 @@
 //! Serial Line V1.02" (RTU 2.5.1, ASCII 2.5.2) and "MODBUS Messaging on TCP/IP V1.0b" (MBAP).
 
 pub mod ascii;
-mod checksum;
 mod frame;
 pub mod hex;
 pub mod mbap;
-mod request;
-mod response;
+mod pdu;
 pub mod rtu;
 
-pub use checksum::{crc16, lrc};
-pub use frame::{Adu, Frame, Inline, NoiseCause, Pdu};
-pub use request::{LengthCheck, Malformed, Masks, Request, Span, Words};
-pub use response::{Exception, Response};
+pub use frame::{Adu, Frame, Inline, NoiseCause, Pdu, crc16, lrc};
+pub use pdu::{Exception, LengthCheck, Malformed, Masks, Request, Response, Span, Words};
 
 /// Function codes.
 pub mod function {

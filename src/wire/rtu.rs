@@ -2,7 +2,7 @@
 //!
 //! Lengths are facts of the protocol. Whether a frame has ended is decided in `line`.
 
-use super::checksum::crc_fits;
+use super::frame::crc_fits;
 use super::function::EXCEPTION;
 use super::{Adu, Frame, crc16};
 
