@@ -4,24 +4,19 @@
 //! word; a behaviour knows only the word. `docs/roles.md` is generated from the tables in here.
 
 mod action;
-mod alarm;
-mod homing;
-mod quantity;
-mod refusal;
-mod segment;
-mod setting;
+mod cause;
+mod motion;
+mod number;
 mod signal;
 
 pub use action::{Action, Modifier, Modifiers};
-pub use alarm::{AlarmCause, AlarmCauses};
-pub use homing::{
-    HomeEnd, HomeStarter, HomingStep, IndexRule, LimitRule, LimitSource, LimitStop, MOST_STEPS,
-    Method, OriginPosition, OriginStop, Pace, SignalEdge, SoftLimitRule, Steps, Then, Until,
+pub use cause::{AlarmCause, AlarmCauses, Cause, Detail, Refusal, RowId};
+pub use motion::{
+    Condition, HomeEnd, HomeStarter, HomingStep, IndexRule, InhibitRule, InterruptRule, Lasts,
+    LimitRule, LimitSource, LimitStop, MOST_STEPS, Method, OriginPosition, OriginStop, Pace,
+    SignalEdge, SoftLimitRule, Steps, Target, Then, Until,
 };
-pub use quantity::{Quantity, Threshold};
-pub use refusal::{Cause, Detail, Refusal, RowId};
-pub use segment::{Condition, InhibitRule, InterruptRule, Lasts, Target};
-pub use setting::{Setting, Taken};
+pub use number::{Quantity, Setting, Taken, Threshold};
 pub use signal::{Input, Inputs, Output, Outputs};
 
 /// A word with a name in files and a line of explanation: what the catalogue prints.
