@@ -2,14 +2,12 @@
 //!
 //! What all drives have in common is here: they take a while to get ready, an alarm switches them off, some alarms only
 //! once the axis has stopped, and a reset clears an alarm whose cause has gone. What asks for power differs from drive to
-//! drive and is a [`PowerControl`], one machine a file. The states have the names of CiA 402; a machine of that standard
-//! would be one more variant.
+//! drive and is a [`PowerControl`] (`control.rs`). The states have the names of CiA 402; a machine of that standard would be
+//! one more variant.
 
-mod commands;
-mod levels;
+mod control;
 
-pub use commands::CommandControl;
-pub use levels::{LevelControl, PowerLevels};
+pub use control::{CommandControl, LevelControl, PowerControl, PowerDemand, PowerLevels};
 
 use super::effect::Effect;
 use crate::event::Ignored;
@@ -52,69 +50,6 @@ impl PowerState {
     /// Does the motor have power?
     pub fn is_on(self) -> bool {
         matches!(self, Self::OperationEnabled | Self::FaultReactionActive)
-    }
-}
-
-/// What a machine says about the power stage, all alarms apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PowerDemand {
-    /// To be off, whatever asks for it.
-    Forbidden,
-    /// Nothing asks for it.
-    Off,
-    /// To be on.
-    On,
-}
-
-/// What asks for power: one of the machines that drives have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PowerControl {
-    /// On while a signal asks for it.
-    Levels(LevelControl),
-    /// On from one command to another.
-    Commands(CommandControl),
-}
-
-impl PowerControl {
-    fn demand(&self, state: PowerState) -> PowerDemand {
-        match self {
-            Self::Levels(it) => it.demand(state),
-            Self::Commands(it) => it.demand(state),
-        }
-    }
-
-    fn set_levels(&mut self, levels: PowerLevels) {
-        match self {
-            Self::Levels(it) => it.set(levels),
-            Self::Commands(it) => it.set_levels(levels),
-        }
-    }
-
-    fn order(&mut self, on: bool, has_alarm: bool) {
-        match self {
-            // Such a drive has no command for it.
-            Self::Levels(_) => {}
-            Self::Commands(it) => it.order(on, has_alarm),
-        }
-    }
-
-    fn levels(&self) -> PowerLevels {
-        match self {
-            Self::Levels(it) => it.levels(),
-            Self::Commands(it) => it.levels(),
-        }
-    }
-
-    /// Why the power stage is off although nothing but the machine keeps it off.
-    fn why_off(&self) -> Ignored {
-        match self {
-            Self::Levels(it) => it.why_off(),
-            Self::Commands(it) => it.why_off(),
-        }
-    }
-
-    fn is_latched(&self) -> bool {
-        matches!(self, Self::Commands(it) if it.is_latched())
     }
 }
 
