@@ -1,6 +1,6 @@
 //! What a homing goes by: its method, its speeds, and what counts as a limit.
 
-use super::goal::Slope;
+use super::motion_state::Slope;
 use crate::behaviour::effect::Replan;
 use crate::motion::{Index, Move, State, Trajectory};
 use crate::time::{Duration, Instant};

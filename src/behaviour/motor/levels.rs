@@ -1,6 +1,6 @@
 //! What the levels ask of an axis: power, a stop, a pause, a jog, and within which limits.
 
-use super::goal::{Ramp, Slope};
+use super::motion_state::{Ramp, Slope};
 use crate::vocabulary::{Input, Inputs, LimitStop};
 
 /// What the levels ask for right now.

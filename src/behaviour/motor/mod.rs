@@ -8,7 +8,6 @@
 //! [`Homing`] how far the search for the origin has come, [`MotorLevels`] what levels ask for, [`MotorTimers`] what
 //! happens next.
 
-mod goal;
 mod home_order;
 mod homing;
 mod levels;
@@ -17,10 +16,9 @@ mod position_loop;
 mod timers;
 mod transitions;
 
-pub use goal::{Ramp, Slope};
 pub use home_order::HomeOrder;
 pub use levels::{Commands, Jog, MotorLevels};
-pub use motion_state::{Control, Phase};
+pub use motion_state::{Control, Phase, Ramp, Slope};
 pub use timers::MotorTimer;
 
 use super::effect::Effect;
@@ -28,9 +26,8 @@ use crate::event::Ignored;
 use crate::motion::{Machine, State, Trajectory};
 use crate::time::{Duration, Instant};
 use crate::vocabulary::HomeEnd;
-use goal::Goal;
 use homing::Homing;
-use motion_state::MotionState;
+use motion_state::{Goal, MotionState};
 use position_loop::{PositionLoop, Release};
 use std::collections::VecDeque;
 use timers::MotorTimers;

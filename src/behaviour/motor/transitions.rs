@@ -1,9 +1,8 @@
 //! How the axis goes from one motion to the next: because of an order or a level, or because one of its timers expires.
 
-use super::goal::{Goal, Ramp, Slope};
 use super::home_order::HomeOrder;
 use super::homing::{Homing, HomingMove, HomingView};
-use super::motion_state::Phase;
+use super::motion_state::{Goal, Phase, Ramp, Slope};
 use super::position_loop::LagRule;
 use super::{Commands, Jog, LEAST_DEVIATION, Motor, MotorTimer};
 use crate::behaviour::effect::Effect;
