@@ -4,13 +4,10 @@
 //! opens nothing. Model files are fetched through a [`Library`], which is the server's to provide.
 
 mod device;
-mod faults;
 mod line;
-mod line_behaviour;
+mod line_keys;
 mod machine;
-mod match_line;
 mod parse;
-mod ports;
 pub mod raw;
 mod state;
 mod wire_spec;
@@ -18,10 +15,9 @@ mod wire_spec;
 pub use device::{Device, DeviceSpec, OverrideKey, SpecProblem};
 pub use line::{BenchLine, LineBuilder, Mismatch, PortSpec};
 pub use machine::{MachineProblem, machine};
-pub use match_line::match_line;
 pub use parse::{kind_of, parse, parse_saved};
 pub use state::{Saved, StateFile};
-pub use wire_spec::{PATIENT_GAP, WireSpec};
+pub use wire_spec::{PATIENT_GAP, WireSpec, match_line};
 
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};

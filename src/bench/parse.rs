@@ -1,7 +1,6 @@
 //! From the text of a bench file to a [`Bench`], or to everything that is wrong with it.
 
-use super::line_behaviour::{line_behaviour, strangers};
-use super::ports::{ports, refuse_taken};
+use super::line_keys::{line_behaviour, ports, refuse_taken, strangers};
 use super::raw::{RawBench, RawBenchDrive, RawBenchLine};
 use super::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, MachineProblem, Mismatch,
