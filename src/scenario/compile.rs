@@ -2,8 +2,7 @@
 //!
 //! Without a bench only what needs no drives is looked at. A key that could change nothing is a mistake.
 
-use super::line::ScenarioLine;
-use super::order::{NoOrder, Order};
+use super::order::{NoOrder, Order, ScenarioLine};
 use super::raw::{
     RawCondition, RawCount, RawLevel, RawRegister, RawScenario, RawScenarioStep, RawStepRepeat,
 };

@@ -6,7 +6,6 @@
 mod compile;
 mod director;
 mod junit;
-mod line;
 mod order;
 pub mod raw;
 mod step;
