@@ -24,11 +24,9 @@
 //! A failure says its seed as `SOAK_SEED=...`, and what is left of the steps when all that can be are left
 //! out. With that variable set, [`seeds`] gives this seed alone.
 
-mod draw;
 mod master;
 mod play;
 mod replies;
-mod routine;
 mod scene;
 mod step;
 
@@ -37,9 +35,8 @@ use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model};
 use crate::rng::Fork;
 use crate::time::Instant;
-use draw::Draws;
 use play::{Played, Polling, play};
-use scene::Scene;
+use scene::{Draws, Scene};
 use std::sync::Arc;
 use step::SoakStep;
 use thiserror::Error;

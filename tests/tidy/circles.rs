@@ -22,7 +22,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("server", &["outputs", "run"]),
     ("server::port", &["pty", "tty"]),
     ("server::port", &["client", "tcp"]),
-    ("testkit::soak", &["routine", "step"]),
 ];
 
 #[test]

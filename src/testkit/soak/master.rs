@@ -1,8 +1,7 @@
 //! The master of a soak test: requests that make sense, requests that almost do, and what they may do to rows.
 
-use super::draw::Draws;
 use super::replies::SoakEvent;
-use super::scene::Scene;
+use super::scene::{Draws, Scene};
 use crate::bank::word_of;
 use crate::bus::Bus;
 use crate::drive::Drive;

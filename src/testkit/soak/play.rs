@@ -2,10 +2,9 @@
 //! looking only now and then.
 
 use super::InjectedBug;
-use super::draw::Draws;
 use super::master;
 use super::replies::{Context, Replies, SoakEvent, framed};
-use super::scene::Scene;
+use super::scene::{Draws, Scene};
 use super::step::{FrameDamage, SoakStep};
 use crate::bank::Bank;
 use crate::bench::WireSpec;

@@ -1,12 +1,13 @@
-//! The line of a soak test: its framing, the drives on it, what stands along their axes.
+//! The line of a soak test: its framing, the drives on it, what stands along their axes; and the numbers that decide.
 
-use super::draw::Draws;
 use crate::bench::{BenchLine, Device, DeviceSpec, LineBuilder, PortSpec, WireSpec};
 use crate::bus::Bus;
 use crate::line::Framing;
 use crate::model::Model;
 use crate::motion::{Index, Machine, Zone};
+use crate::rng::Rng;
 use crate::serial::Mode;
+use crate::time::Duration;
 use std::sync::Arc;
 
 /// The line of a soak test.
@@ -85,4 +86,56 @@ fn machine(draws: &mut Draws) -> Machine {
     let hard_stop = maybe(500, 50_000).map(|room| [-room, room]);
     let index = maybe(50, 10_000).map(|every| Index { every, offset: 17 });
     Machine { home, negative_limit, positive_limit, hard_stop, index }
+}
+
+/// One stream of numbers.
+#[derive(Debug, Clone)]
+pub struct Draws(pub Rng);
+
+impl Draws {
+    /// A number from `low` to `high`, both included.
+    pub fn between(&mut self, low: u64, high: u64) -> u64 {
+        self.0.between(low, high)
+    }
+
+    /// A whole number of `low` to `high`, both included.
+    pub fn signed(&mut self, low: i64, high: i64) -> i64 {
+        low.saturating_add(self.between(0, high.saturating_sub(low).max(0) as u64) as i64)
+    }
+
+    /// Did it happen, one time of `n`?
+    pub fn one_in(&mut self, n: u64) -> bool {
+        self.between(1, n) == 1
+    }
+
+    /// One of `from`, if there is any.
+    pub fn pick<'a, T>(&mut self, from: &'a [T]) -> Option<&'a T> {
+        let last = from.len().checked_sub(1)?;
+        from.get(self.between(0, last as u64) as usize)
+    }
+
+    /// Any word.
+    pub fn word(&mut self) -> u16 {
+        self.between(0, 0xFFFF) as u16
+    }
+
+    /// Any byte.
+    pub fn byte(&mut self) -> u8 {
+        self.between(0, 0xFF) as u8
+    }
+
+    /// Up to `most` bytes, and one at least.
+    pub fn bytes(&mut self, most: u64) -> Vec<u8> {
+        let len = self.between(1, most);
+        (0..len).map(|_| self.byte()).collect()
+    }
+
+    /// A pause: none, within a frame, or up to `most`.
+    pub fn pause(&mut self, most: Duration) -> Duration {
+        match self.between(0, 3) {
+            0 => Duration::ZERO,
+            1 => Duration::from_micros(self.between(1, 30_000)),
+            _ => Duration::from_micros(self.between(0, most.as_micros() as u64)),
+        }
+    }
 }
