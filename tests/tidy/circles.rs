@@ -20,8 +20,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("model::compile", &["line", "names", "terminals", "uses"]),
     ("model::wiring", &["axis", "segments"]),
     ("server", &["outputs", "run"]),
-    ("server::port", &["pty", "tty"]),
-    ("server::port", &["client", "tcp"]),
 ];
 
 #[test]

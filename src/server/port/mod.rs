@@ -7,14 +7,12 @@
 //! that waited for a slow reader would shift the time of every drive on it. What a reader does not take is
 //! lost, as on a wire; only a TCP client, which was promised a stream, is disconnected instead.
 
-mod client;
 pub mod pty;
 pub mod serial;
 mod stream;
 mod symlink;
 pub mod tcp;
 mod tty;
-mod tuning;
 
 use crate::serial::Settings;
 use rustix::event::{PollFd, Timespec, poll};
@@ -23,11 +21,11 @@ use std::fmt;
 use std::io;
 use std::task::{Context, Poll};
 
-pub use pty::Pty;
+pub use pty::{Input, Left, Pty};
 pub use serial::Serial;
 pub use stream::{MASTER, StreamPort};
 pub use tcp::{Listener, TcpEvent, TcpPort};
-pub use tty::{Input, Left, TtyPort};
+pub use tty::TtyPort;
 
 /// Bytes that a port hands over at once; a Modbus frame has 260 at most.
 pub const INPUT: usize = 1024;

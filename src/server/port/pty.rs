@@ -7,7 +7,7 @@
 //! It holds its own descriptor of the side that programs open. Otherwise the first program to close it
 //! would hang up the line, and reading would fail until another one came. The price: the kernel never sees
 //! a *last* close, so it discards nothing that a program left unread and frees no lock that a killed program
-//! had put on the terminal. `presence.rs` counts who is there, so that we can do both.
+//! had put on the terminal. [`Presence`] counts who is there, so that we can do both.
 
 use std::ffi::OsString;
 use std::io;
@@ -27,10 +27,29 @@ use tokio::io::unix::AsyncFd;
 use tracing::warn;
 
 use super::symlink::PortSymlink;
-use super::{Input, Left, is_any_ready, is_hang_up, said};
-use presence::{Presence, Since};
+use super::{is_any_ready, is_hang_up, said};
+use notices::Presence;
 
-mod presence;
+/// What was read from a terminal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Input {
+    /// Bytes; at least one, unless a program has left or there was nothing to read.
+    pub len: usize,
+    /// Have all programs left the other end?
+    pub left: Left,
+}
+
+/// When the last program has closed a terminal, if it has. A real port does not tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Left {
+    /// It has not.
+    #[default]
+    None,
+    /// Before these bytes, which are of the next program.
+    Before,
+    /// No program has it open now, and all that was sent has been read.
+    After,
+}
 
 /// A pseudo-terminal, open at both ends.
 #[derive(Debug)]
@@ -249,6 +268,119 @@ fn or_nothing(done: rustix::io::Result<usize>) -> io::Result<usize> {
         Err(Errno::AGAIN) => Ok(0),
         Err(e) if is_hang_up(&e.into()) => Ok(0),
         other => Ok(other?),
+    }
+}
+
+/// What the opens and closes since the last look have come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Since {
+    /// No program has left, or one still has it open.
+    Same,
+    /// The last program has left.
+    Left,
+    /// The last program has left, and another has come.
+    Replaced,
+}
+
+/// Who has a pseudo-terminal open, counted from the file notices of the system.
+///
+/// We hold the terminal open ourselves, so the kernel never sees a last close. Opens and closes of others are
+/// counted instead. The system merges a notice with the one before it if the two are equal; so the directory
+/// is watched as well as the terminal, which puts another notice between any two of them.
+#[cfg(target_os = "linux")]
+mod notices {
+    use super::{Context, Path, Poll, Since, io};
+    use rustix::fs::inotify::{self, CreateFlags, ReadFlags, WatchFlags};
+    use rustix::io::Errno;
+    use std::mem::MaybeUninit;
+    use std::os::fd::OwnedFd;
+    use tokio::io::unix::AsyncFd;
+
+    /// How many open files of others lead to a terminal.
+    #[derive(Debug)]
+    pub(super) struct Presence {
+        notices: AsyncFd<OwnedFd>,
+        terminal: i32,
+        open: u32,
+    }
+
+    impl Presence {
+        /// Counts from now on, while no other process has `terminal` open.
+        pub(super) fn watch(terminal: &Path) -> io::Result<Self> {
+            let notices = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
+            let wanted = WatchFlags::OPEN | WatchFlags::CLOSE;
+            let directory = terminal.parent().unwrap_or(Path::new("/"));
+            inotify::add_watch(&notices, directory, wanted)?;
+            let terminal = inotify::add_watch(&notices, terminal, wanted)?;
+            Ok(Self { notices: super::watch(notices)?, terminal, open: 0 })
+        }
+
+        /// Did a program have it open at the last poll?
+        pub(super) fn is_anybody_there(&self) -> bool {
+            self.open > 0
+        }
+
+        /// Waits until a look may be worth while.
+        pub(super) fn poll_changes(&self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+            // What is noticed from here on makes it ready again.
+            self.notices.poll_read_ready(cx).map_ok(|mut ready| ready.clear_ready())
+        }
+
+        /// What has happened since the last look.
+        pub(super) fn poll(&mut self) -> Since {
+            let mut buffer = [MaybeUninit::uninit(); 1024];
+            let mut notices = inotify::Reader::new(self.notices.get_ref(), &mut buffer);
+            let mut since = Since::Same;
+            loop {
+                let (watched, what) = match notices.next() {
+                    Ok(notice) => (notice.wd(), notice.events()),
+                    Err(Errno::INTR) => continue,
+                    Err(_) => return since,
+                };
+                let ours = watched == self.terminal;
+                if what.contains(ReadFlags::QUEUE_OVERFLOW) {
+                    // Not known any more: as if all had left.
+                    (self.open, since) = (0, Since::Left);
+                } else if ours && what.contains(ReadFlags::OPEN) {
+                    self.open += 1;
+                    if since == Since::Left {
+                        since = Since::Replaced;
+                    }
+                } else if ours && self.open > 0 {
+                    self.open -= 1;
+                    if self.open == 0 {
+                        since = Since::Left;
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod notices {
+    use super::{Context, Path, Poll, Since, io};
+
+    /// Never there: this system has no such notices of terminals.
+    #[derive(Debug)]
+    pub(super) enum Presence {}
+
+    impl Presence {
+        pub(super) fn watch(_: &Path) -> io::Result<Self> {
+            Err(io::ErrorKind::Unsupported.into())
+        }
+
+        pub(super) fn is_anybody_there(&self) -> bool {
+            match *self {}
+        }
+
+        pub(super) fn poll_changes(&self, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+            match *self {}
+        }
+
+        pub(super) fn poll(&mut self) -> Since {
+            match *self {}
+        }
     }
 }
 

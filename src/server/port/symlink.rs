@@ -10,7 +10,7 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, symlink};
 use std::path::{Path, PathBuf};
 
 use super::said;
-use super::tuning::is_pseudo_terminal;
+use super::serial::is_pseudo_terminal;
 use crate::server::paths::PathLock;
 
 /// A symlink of ours; gone when this is dropped.

@@ -18,11 +18,13 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tracing::{info, warn};
 
-use super::client::Client;
 use super::{ClientId, INPUT, Port, PortEvent, is_any_ready, said};
 use crate::serial::Settings;
 use crate::server::clock::{Clock, WallTimer};
 use crate::time::Duration;
+use client::Client;
+
+mod client;
 
 /// Clients at once; real drives and gateways serve 1 to 32.
 pub const MAX_CLIENTS: usize = 64;

@@ -1,6 +1,7 @@
 //! A terminal as a port: a pseudo-terminal of ours, or a serial port that may go and come back.
 
-use super::{ClientId, INPUT, Port, PortEvent, Pty, Serial};
+use super::pty::{Input, Left, Pty};
+use super::{ClientId, INPUT, Port, PortEvent, Serial};
 use crate::serial::Settings;
 use crate::server::clock::{Clock, WallTimer};
 use crate::time::Duration;
@@ -26,27 +27,6 @@ enum Tty {
     Pty(Pty),
     /// A device that others made.
     Serial(Serial),
-}
-
-/// What was read from a terminal.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Input {
-    /// Bytes; at least one, unless a program has left or there was nothing to read.
-    pub len: usize,
-    /// Have all programs left the other end?
-    pub left: Left,
-}
-
-/// When the last program has closed a terminal, if it has. A real port does not tell.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Left {
-    /// It has not.
-    #[default]
-    None,
-    /// Before these bytes, which are of the next program.
-    Before,
-    /// No program has it open now, and all that was sent has been read.
-    After,
 }
 
 impl Tty {

@@ -14,8 +14,7 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::{Sender, UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::AbortHandle;
 
-use super::tcp::TcpEvent;
-use super::{ClientId, INPUT, said};
+use super::{ClientId, INPUT, TcpEvent, said};
 use crate::time::Duration;
 
 /// Bytes that may wait for a client on top of what the system keeps for it: some hundred answers.
