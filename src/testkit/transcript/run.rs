@@ -1,7 +1,6 @@
 //! Plays a transcript against drives under the virtual clock.
 
-use super::TranscriptFailure;
-use super::script::{Check, DriveLine, Script, TranscriptStep};
+use super::{Check, DriveLine, Script, TranscriptFailure, TranscriptStep};
 use crate::bench::{BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, machine};
 use crate::drive::View;
 use crate::testkit::{Rig, to_hex};
