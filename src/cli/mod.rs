@@ -7,7 +7,6 @@ mod args;
 mod check;
 mod run;
 mod show;
-mod state;
 
 use crate::server::{plain, said, say};
 use args::{Args, CliCommand};

@@ -1,7 +1,6 @@
 //! `drivemu run`: flags or a bench file become a bench, and the server runs it.
 
 use super::args::{LogFormatArg, PacingArg, ParityArg, RunArgs};
-use super::state::StateArg;
 use super::{CliError, FAILED, INVALID, NO_PORT};
 use crate::bench::{
     Bench, BenchLine, Device, DeviceSpec, Library, LineBuilder, Mismatch, OverrideKey, PortSpec,
@@ -10,6 +9,7 @@ use crate::bench::{
 use crate::medium::{LineBehaviour, Pacing};
 use crate::model::builtin::Builtin;
 use crate::model::{Choices, Model, load};
+use crate::problem::Problem;
 use crate::problem::render::render;
 use crate::scenario::{self, Verdict};
 use crate::serial::{Parity, Settings};
@@ -353,4 +353,42 @@ fn settings(args: &RunArgs, own: Settings) -> Settings {
         Some(ParityArg::Odd) => Parity::Odd,
     };
     settings
+}
+
+/// What `--state` names: a state file as it was found. Without one it is that of a first run.
+#[derive(Debug, Default)]
+struct StateArg {
+    /// What is in it.
+    saved: Saved,
+    file: String,
+    text: String,
+}
+
+impl StateArg {
+    /// Takes the file at `path` for this run.
+    fn open(path: &Path) -> Result<(Store, Self), CliError> {
+        let file = path.display().to_string();
+        let (store, text) = Store::open(path)
+            .map_err(|error| CliError::invalid(format!("cannot use {file}: {}", plain(&error))))?;
+        let mut state = Self { file, ..Self::default() };
+        if let Some(text) = text {
+            state.text = text;
+            state.saved = Saved::read(&state.text).map_err(|problems| state.refused(&problems))?;
+        }
+        Ok((store, state))
+    }
+
+    /// Makes sure that everything in it has found its drive.
+    fn finish(mut self) -> Result<(), CliError> {
+        let saved = std::mem::take(&mut self.saved);
+        saved.finish().map_err(|problems| self.refused(&problems))
+    }
+
+    fn refused(&self, problems: &[Problem]) -> CliError {
+        let Self { file, text, .. } = self;
+        let told = render(problems, file, text);
+        let advice =
+            format!("{file} was not changed: correct it, move it away, or give another --state");
+        CliError::invalid(format!("{told}{advice}"))
+    }
 }
