@@ -3,14 +3,13 @@
 //! One loop for whatever kinds of ports: something arrives, or it is time; then what the bus gives goes out.
 
 use super::clock::Clock;
-use super::inbox::{Inbox, Message};
 use super::lock;
 use super::logger::Logger;
 use super::port::{ClientId, INPUT, Port, PortEvent};
 use super::ports::{PortId, Ports};
 use super::store::Store;
 use crate::bench::WireSpec;
-use crate::bus::{Bus, Carrier, LinkId, Output};
+use crate::bus::{Bus, Carrier, Command, CommandError, LinkId, Output, Reply};
 use crate::event::Event;
 use crate::line::Framing;
 use crate::scenario::{Director, Verdict};
@@ -21,7 +20,8 @@ use std::fmt;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use tokio::sync::mpsc;
+use thiserror::Error;
+use tokio::sync::{mpsc, oneshot};
 use tracing::warn;
 
 /// Of the wall: a line works so long at a time on what is due already.
@@ -349,5 +349,61 @@ async fn woken(clock: Clock, due: Option<Instant>) {
     match due {
         Some(at) if at <= clock.now() => tokio::task::yield_now().await,
         due => clock.until(due).await,
+    }
+}
+
+/// Capacity of an inbox in messages; sending blocks when it is full.
+const ROOM: usize = 16;
+
+/// Gives commands to a line that is being served, from any task.
+#[derive(Debug, Clone)]
+pub struct LineHandle(mpsc::Sender<Message>);
+
+/// Where the commands for a line come to: its only input besides its masters.
+#[derive(Debug)]
+pub struct Inbox(mpsc::Receiver<Message>);
+
+/// Something for the line.
+#[derive(Debug)]
+enum Message {
+    /// Carry this out and say what came of it.
+    Command(Command, oneshot::Sender<Result<Reply, CommandError>>),
+    /// Serve no more.
+    Stop,
+}
+
+/// Why a command had no effect.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum InboxError {
+    /// The line did not carry it out.
+    #[error(transparent)]
+    Refused(#[from] CommandError),
+    /// The line is not served any more.
+    #[error("the line is no longer served")]
+    Ended,
+}
+
+impl LineHandle {
+    /// A handle, and the inbox that it leads to: a line that is served takes from there.
+    pub fn new() -> (Self, Inbox) {
+        let (messages, inbox) = mpsc::channel(ROOM);
+        (Self(messages), Inbox(inbox))
+    }
+
+    /// Has the line carry out `command` now, and waits until it has.
+    ///
+    /// # Errors
+    /// Why it has not.
+    pub async fn command(&self, command: impl Into<Command>) -> Result<Reply, InboxError> {
+        let (reply, replied) = oneshot::channel();
+        let message = Message::Command(command.into(), reply);
+        self.0.send(message).await.map_err(|_| InboxError::Ended)?;
+        Ok(replied.await.map_err(|_| InboxError::Ended)??)
+    }
+
+    /// Has the line served no more. Its ports close with it.
+    pub async fn stop(&self) {
+        // Fails if it is not served any more.
+        let _ = self.0.send(Message::Stop).await;
     }
 }

@@ -19,7 +19,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("log", &["json", "no_effect", "text"]),
     ("model::compile", &["line", "names", "terminals", "uses"]),
     ("model::wiring", &["axis", "segments"]),
-    ("server", &["outputs", "run"]),
 ];
 
 #[test]
