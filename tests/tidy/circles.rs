@@ -16,7 +16,10 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("medium", &["compile", "spec"]),
     ("event", &["drive_display", "drive_event"]),
     ("model::compile", &["line", "names", "terminals", "uses"]),
-    ("model::wiring", &["axis", "segments"]),
+    ("server", &["outputs", "run"]),
+    ("server::port", &["pty", "tty"]),
+    ("server::port", &["client", "tcp"]),
+    ("testkit::soak", &["routine", "step"]),
 ];
 
 #[test]

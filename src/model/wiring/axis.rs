@@ -1,10 +1,10 @@
 //! The axis that a drive moves, and the numbers that its motions and outputs go by.
 
-use super::{Choice, Coded, InterruptWiring, Segments};
+use super::{Choice, Coded, InterruptWiring, Segments, SettingRow};
 use crate::model::RowId;
 use crate::time::Duration;
 use crate::units::Unit;
-use crate::vocabulary::{InhibitRule, LimitStop, Setting, SoftLimitRule, Taken};
+use crate::vocabulary::{InhibitRule, LimitStop, Setting, SoftLimitRule};
 
 /// The axis that the drive moves.
 #[derive(Debug)]
@@ -123,19 +123,6 @@ pub struct Gear {
     pub numerator: RowId,
     /// The row with the denominator, which can't hold 0.
     pub denominator: RowId,
-}
-
-/// The row of a setting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SettingRow {
-    /// What for.
-    pub setting: Setting,
-    /// The row that holds its value.
-    pub row: RowId,
-    /// When a value counts that is written to it.
-    pub taken: Taken,
-    /// Where a drive keeps the value that counts, from 0 on.
-    pub slot: u16,
 }
 
 /// A number that the model fixes, or that a row holds.

@@ -7,13 +7,13 @@ mod queries;
 mod segments;
 mod signals;
 
-pub use axis::{AxisWiring, Counts, Gear, Limits, Number, SettingRow};
+pub use axis::{AxisWiring, Counts, Gear, Limits, Number};
 pub(super) use choice::code_in;
 pub use choice::{Choice, Coded, Digit};
 pub use homing::{Finish, HomingRules};
 pub use segments::{
     ChainLink, ChainRules, InterruptWiring, PositionSegment, PositionSegments, Segments,
-    VelocitySegments,
+    SettingRow, VelocitySegments,
 };
 pub use signals::{
     BitOverride, CommandRows, HoldTime, InputWords, Monitor, NotSimulated, OutputWord, Reaction,

@@ -1,9 +1,22 @@
 //! Motions by number, how one follows another, and the move that interrupts others: the rows that they go by.
 
-use super::{Choice, SettingRow};
+use super::Choice;
 use crate::model::RowId;
 use crate::units::Unit;
-use crate::vocabulary::{Condition, InterruptRule, Lasts, Target};
+use crate::vocabulary::{Condition, InterruptRule, Lasts, Setting, Taken, Target};
+
+/// The row of a setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SettingRow {
+    /// What for.
+    pub setting: Setting,
+    /// The row that holds its value.
+    pub row: RowId,
+    /// When a value counts that is written to it.
+    pub taken: Taken,
+    /// Where a drive keeps the value that counts, from 0 on.
+    pub slot: u16,
+}
 
 /// Motions by number.
 #[derive(Debug, Default)]
