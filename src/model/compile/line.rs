@@ -1,6 +1,6 @@
 //! How a drive talks: the section `line` resolved and checked.
 
-use super::names::Names;
+use super::names::{Names, code_rules};
 use super::rows::order;
 use super::terminals::hold;
 use super::uses::Uses;
@@ -8,10 +8,9 @@ use crate::model::raw::{
     RawBaud, RawFormat, RawLengthCheck, RawLine, RawLongAccess, RawUnit, RawUnlistedReads,
     RawWordOrder, RawWriteOnlyReads,
 };
-use crate::model::wiring::code_in;
 use crate::model::{
-    Access, Coded, HoldTime, LineRules, LongAccess, Reaction, Refuse, Row, RowId, UnitRule,
-    WireFormat, WordOrder,
+    Access, Coded, HoldTime, LineRules, LongAccess, Reaction, Refuse, Row, UnitRule, WireFormat,
+    WordOrder,
 };
 use crate::problem::{At, Path, Problem, has_unread, suggest};
 use crate::serial::Format;
@@ -201,48 +200,6 @@ fn word_order(raw: &RawWordOrder, path: &Path, names: &mut Names) -> Option<Word
             WordOrder::Row { row, codes }
         }
     })
-}
-
-/// Is there such a hex digit in a word?
-pub(super) fn has_digit(digit: Option<u8>, path: &Path, names: &mut Names) -> bool {
-    let is_there = digit.is_none_or(|digit| digit <= 3);
-    if !is_there {
-        let what = "a word has hex digits 0 to 3, counted from the right";
-        names.report(Problem::value(path.key("digit"), what));
-    }
-    is_there
-}
-
-/// Each code has a value of the row, or of one hex digit of it, and the factory value a code.
-pub(super) fn code_rules<T>(
-    row: Option<RowId>,
-    digit: Option<u8>,
-    codes: &BTreeMap<i64, T>,
-    path: &Path,
-    names: &mut Names,
-) {
-    if !has_digit(digit, path, names) {
-        return;
-    }
-    let Some(row) = row.map(|row| names.get(row)) else { return };
-    let holds = |code: i64| match digit {
-        None => row.admits(code),
-        Some(_) => {
-            let words = |(low, high): &(i64, i64)| (*low.max(&0))..=(*high.min(&0xFFFF));
-            row.spans.iter().flat_map(words).any(|value| code_in(value, digit) == code)
-        }
-    };
-    for code in codes.keys().filter(|code| !holds(**code)) {
-        let what = format!("{} is never {code}", row.id);
-        names.report(Problem::key(path.key("codes").key(code), what));
-    }
-    let factory = row.kind.value(row.init);
-    let init = code_in(factory, digit);
-    let is_whole = !has_unread(names.problems, &path.key("codes"));
-    if row.admits(factory) && !codes.contains_key(&init) && is_whole {
-        let what = format!("the factory value of {}, {init}, is not in `codes`", row.id);
-        names.report(Problem::key(path.key("codes"), what));
-    }
 }
 
 /// The ladder of refusals, with a rung for each cause that a request can meet.

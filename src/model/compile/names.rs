@@ -1,10 +1,10 @@
 //! Names of the file looked up: rows, words and codes. What a name does not stand for is reported, with the nearest one.
 
-use super::line::{code_rules, has_digit};
 use super::rows::Rows;
 use crate::model::raw::{RawChoice, RawChosen, RawDigit};
+use crate::model::wiring::code_in;
 use crate::model::{Choice, Coded, Digit, Row, RowId};
-use crate::problem::{At, Path, Problem, suggest};
+use crate::problem::{At, Path, Problem, has_unread, suggest};
 use crate::time::{Duration, parse_duration};
 use crate::vocabulary::{Input, Named};
 use std::collections::BTreeMap;
@@ -155,4 +155,46 @@ pub fn duration(text: &str, path: &Path, problems: &mut Vec<Problem>) -> Option<
         problems.push(Problem::value(path.clone(), what).advise(advice));
     }
     duration
+}
+
+/// Is there such a hex digit in a word?
+fn has_digit(digit: Option<u8>, path: &Path, names: &mut Names) -> bool {
+    let is_there = digit.is_none_or(|digit| digit <= 3);
+    if !is_there {
+        let what = "a word has hex digits 0 to 3, counted from the right";
+        names.report(Problem::value(path.key("digit"), what));
+    }
+    is_there
+}
+
+/// Each code has a value of the row, or of one hex digit of it, and the factory value a code.
+pub(super) fn code_rules<T>(
+    row: Option<RowId>,
+    digit: Option<u8>,
+    codes: &BTreeMap<i64, T>,
+    path: &Path,
+    names: &mut Names,
+) {
+    if !has_digit(digit, path, names) {
+        return;
+    }
+    let Some(row) = row.map(|row| names.get(row)) else { return };
+    let holds = |code: i64| match digit {
+        None => row.admits(code),
+        Some(_) => {
+            let words = |(low, high): &(i64, i64)| (*low.max(&0))..=(*high.min(&0xFFFF));
+            row.spans.iter().flat_map(words).any(|value| code_in(value, digit) == code)
+        }
+    };
+    for code in codes.keys().filter(|code| !holds(**code)) {
+        let what = format!("{} is never {code}", row.id);
+        names.report(Problem::key(path.key("codes").key(code), what));
+    }
+    let factory = row.kind.value(row.init);
+    let init = code_in(factory, digit);
+    let is_whole = !has_unread(names.problems, &path.key("codes"));
+    if row.admits(factory) && !codes.contains_key(&init) && is_whole {
+        let what = format!("the factory value of {}, {init}, is not in `codes`", row.id);
+        names.report(Problem::key(path.key("codes"), what));
+    }
 }
