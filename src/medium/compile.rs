@@ -5,8 +5,9 @@
 use super::keys::{self, FaultKeys, KeyRefusal};
 use super::raw::{COMMON_KEYS, RawAct, RawFault, RawFaultRegister, RawFunctions};
 use super::{FaultEffect, FaultKind, FaultRule, LineBehaviour, When, spec};
+use crate::problem::decode::decode;
 use crate::problem::tree::Node;
-use crate::problem::{Path, Problem, is_unread, suggest};
+use crate::problem::{Path, Places, Problem, is_unread, settle, suggest};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
 use crate::units::parse_integer;
@@ -46,6 +47,28 @@ pub struct FaultSet {
     pub line_behaviour: LineBehaviour,
 }
 
+/// Reads the compact form of one rule or preset for `site`, where rules called `taken` stand already.
+///
+/// # Errors
+/// Everything that is wrong with it, each with its place in `spec`.
+pub fn parse(
+    spec: &str,
+    site: &dyn FaultContext,
+    taken: &[&str],
+) -> Result<FaultSet, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let tree = spec::cut(spec, &mut problems);
+    let path = Path::root();
+    let raw: Option<RawFault> = decode(&tree, &path, &[], &mut problems);
+    let rules = raw.map(|raw| compile(&raw, &tree, &path, site, taken, &mut problems));
+    if problems.is_empty() {
+        return Ok(rules.unwrap_or_default());
+    }
+    let mut places = Places::new(&tree);
+    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
+    Err(problems)
+}
+
 /// Compiles the rule at `path` for `site`, where rules called `taken` stand already. A preset gives several
 /// rules. What is wrong goes to `problems`; then what comes back is not to be used.
 pub fn compile(
@@ -78,7 +101,7 @@ pub fn compile(
     let mut rules: Vec<FaultRule> = Vec::new();
     for spec in preset.rules {
         let names: Vec<_> = rules.iter().map(|it| it.name.as_str()).collect();
-        for rule in spec::parse(spec, site, &names).unwrap_or_default().rules {
+        for rule in parse(spec, site, &names).unwrap_or_default().rules {
             let when = When { chance: rule.when.chance, ..when.clone() };
             rules.push(FaultRule { when, ..rule });
         }

@@ -23,13 +23,12 @@ mod rules;
 mod spec;
 mod transmitter;
 
-pub use compile::{FaultContext, FaultSet, NoRow, compile};
+pub use compile::{FaultContext, FaultSet, NoRow, compile, parse};
 pub use keys::{FaultKey, KeyForm};
 pub use kinds::{FaultEffect, FaultKind, Leaves, LeavingReply, Passage};
 pub use line_behaviour::{Chatter, LineBehaviour, Pacing};
 pub use presets::Preset;
 pub use rules::{FaultHit, FaultRule, FaultRules, PendingHit, When};
-pub use spec::parse;
 pub use transmitter::{Carrier, DriveReply, LinkId, MasterRequest, Outgoing, Passing};
 
 use crate::line::{Line, Units};
@@ -162,7 +161,8 @@ impl Medium {
         let effect = pending.hit.effect;
         let rng = &mut pending.rng;
         let transmitter = &mut self.transmitter;
-        let mut out = Outgoing { transmitter, now, link, begins: now, effect, rng };
+        let mut out =
+            Outgoing { transmitter, now, link, begins: now, holder: effect.holder(), rng };
         effect.on_request(request, &mut out);
         Some(pending)
     }
@@ -186,7 +186,7 @@ impl Medium {
             return Some(Duration::ZERO);
         };
         let transmitter = &mut self.transmitter;
-        let mut out = Outgoing { transmitter, now, link, begins, effect: hit.effect, rng };
+        let mut out = Outgoing { transmitter, now, link, begins, holder: hit.effect.holder(), rng };
         hit.effect.on_reply(reply, &mut out)
     }
 

@@ -3,36 +3,11 @@
 //! A value is written as in YAML, so a list takes brackets: `lose_reply:function=[0x06,0x10]`. What is said
 //! here becomes the same tree as a map in a bench file and is checked by the same code.
 
-use super::raw::RawFault;
-use super::{FaultContext, FaultSet, compile};
-use crate::problem::decode::decode;
 use crate::problem::tree::{Content, MapEntry, Node};
-use crate::problem::{Mark, Path, Places, Problem, parse as parse_yaml, settle};
-
-/// Reads the compact form of one rule or preset for `site`, where rules called `taken` stand already.
-///
-/// # Errors
-/// Everything that is wrong with it, each with its place in `spec`.
-pub fn parse(
-    spec: &str,
-    site: &dyn FaultContext,
-    taken: &[&str],
-) -> Result<FaultSet, Vec<Problem>> {
-    let mut problems = Vec::new();
-    let tree = cut(spec, &mut problems);
-    let path = Path::root();
-    let raw: Option<RawFault> = decode(&tree, &path, &[], &mut problems);
-    let rules = raw.map(|raw| compile(&raw, &tree, &path, site, taken, &mut problems));
-    if problems.is_empty() {
-        return Ok(rules.unwrap_or_default());
-    }
-    let mut places = Places::new(&tree);
-    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
-    Err(problems)
-}
+use crate::problem::{Mark, Path, Problem, parse as parse_yaml};
 
 /// The map that a spec stands for, cut at its colons and commas. What has no place of its own is marked at the kind.
-fn cut(spec: &str, problems: &mut Vec<Problem>) -> Node {
+pub(super) fn cut(spec: &str, problems: &mut Vec<Problem>) -> Node {
     let (kind, rest) = spec.split_once(':').unwrap_or((spec, ""));
     let mark = mark_of(spec, kind.trim());
     let text = |text: &str, mark| Node { content: Content::Text(text.to_owned()), mark };

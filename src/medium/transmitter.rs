@@ -4,7 +4,6 @@
 //! character. A reply begins after the drive's turnaround, its characters follow each other without a gap, and what
 //! has no adapter in front of it leaves in one piece with its last character (serial line, 2.5.1).
 
-use super::kinds::FaultEffect;
 use super::{LineBehaviour, Pacing};
 use crate::line::Line;
 use crate::rng::{Fork, Rng};
@@ -97,6 +96,15 @@ type Ticket = (Instant, Progress, u64);
 /// An entry without an instant of its own: somebody else has to release it.
 const NEVER: Instant = Instant::END;
 
+/// A fault that holds a reply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Holder {
+    /// The name of its kind.
+    pub(super) kind: &'static str,
+    /// What releases the reply before its instant, if anything does.
+    pub(super) released_by: Option<Passing>,
+}
+
 #[derive(Debug)]
 struct Entry {
     link: LinkId,
@@ -104,7 +112,7 @@ struct Entry {
     /// Does a reply end with it?
     is_last: bool,
     /// What holds it, and may release it before its instant.
-    holder: Option<FaultEffect>,
+    holder: Option<Holder>,
 }
 
 /// What the wire of one link is doing.
@@ -235,7 +243,8 @@ impl Transmitter {
     /// Something passes on `link`: replies that are held may leave now.
     pub(super) fn on_passing(&mut self, now: Instant, link: LinkId, passing: Passing) {
         let released = |entry: &Entry| {
-            entry.link == link && entry.holder.is_some_and(|holder| holder.releases(passing))
+            let released_by = entry.holder.and_then(|holder| holder.released_by);
+            entry.link == link && released_by == Some(passing)
         };
         while let Some(ticket) =
             self.queue.iter().find(|(_, entry)| released(entry)).map(|(it, _)| *it)
@@ -359,8 +368,8 @@ pub struct Outgoing<'a> {
     pub(super) link: LinkId,
     /// When the drive begins to send its reply.
     pub(super) begins: Instant,
-    /// The fault.
-    pub(super) effect: FaultEffect,
+    /// What the fault holds a reply as.
+    pub(super) holder: Holder,
     pub(super) rng: &'a mut Rng,
 }
 
@@ -384,7 +393,7 @@ impl Outgoing<'_> {
     /// the drive would have begun.
     pub fn hold(&mut self, most: Option<Duration>, frame: &Frame) {
         let at = most.map_or(NEVER, |by| self.begins + by);
-        let holder = Some(self.effect);
+        let holder = Some(self.holder);
         let entry = Entry { link: self.link, frame: *frame, is_last: true, holder };
         self.transmitter.insert(at, Progress::Waiting, entry);
     }
@@ -393,7 +402,7 @@ impl Outgoing<'_> {
     pub fn is_holding(&self) -> bool {
         let held = |entry: &Entry| {
             entry.link == self.link
-                && entry.holder.is_some_and(|holder| holder.name() == self.effect.name())
+                && entry.holder.is_some_and(|holder| holder.kind == self.holder.kind)
         };
         self.transmitter.queue.values().any(held)
     }

@@ -10,6 +10,7 @@ impl Fault for Late {
     const NAME: &'static str = "late";
     const ABOUT: &'static str =
         "The reply is held back until the next request on its link, and then sent first.";
+    const RELEASED_BY: Option<Passing> = Some(Passing::Request);
 
     fn read(_: &FaultKeys) -> Result<Self, KeyRefusal> {
         Ok(Self {})
@@ -18,10 +19,6 @@ impl Fault for Late {
     fn on_reply(&mut self, reply: &DriveReply<'_>, out: &mut Outgoing<'_>) -> Option<Duration> {
         out.hold(None, &reply.frame());
         None
-    }
-
-    fn releases(&self, passing: Passing) -> bool {
-        passing == Passing::Request
     }
 
     fn leaves(&self) -> Leaves {

@@ -3,7 +3,7 @@
 //! A new kind is a file in this folder and a line in the list below. Nothing else in the program knows it.
 
 use super::keys::{FaultKey, FaultKeys, KeyRefusal};
-use super::transmitter::{DriveReply, MasterRequest, Outgoing, Passing};
+use super::transmitter::{DriveReply, Holder, MasterRequest, Outgoing, Passing};
 use crate::rng::Rng;
 use crate::time::Duration;
 use serde::Serialize;
@@ -83,8 +83,11 @@ macro_rules! kinds {
                 match self { $(Self::$Kind(it) => it.on_reply(reply, out),)* }
             }
 
-            pub(super) fn releases(&self, passing: Passing) -> bool {
-                match self { $(Self::$Kind(it) => it.releases(passing),)* }
+            /// How it holds a reply.
+            pub(super) fn holder(&self) -> Holder {
+                match self {
+                    $(Self::$Kind(_) => Holder { kind: $Kind::NAME, released_by: $Kind::RELEASED_BY },)*
+                }
             }
         }
     };
@@ -127,6 +130,8 @@ trait Fault: Copy + Serialize {
     const IMPOSSIBLE_ON_TCP: Option<&'static str> = None;
     /// Does it also act on requests to unit 0, which have no reply?
     const TAKES_BROADCASTS: bool = false;
+    /// What on its link releases a reply that it holds, if anything does.
+    const RELEASED_BY: Option<Passing> = None;
 
     /// Reads it from its keys, each of which is in its range.
     fn read(keys: &FaultKeys) -> Result<Self, KeyRefusal>;
@@ -154,11 +159,6 @@ trait Fault: Copy + Serialize {
     fn on_reply(&mut self, reply: &DriveReply<'_>, out: &mut Outgoing<'_>) -> Option<Duration> {
         out.send(&reply.frame());
         Some(Duration::ZERO)
-    }
-
-    /// Does what passes on a link release the reply that it holds for that link?
-    fn releases(&self, _passing: Passing) -> bool {
-        false
     }
 
     /// The frames that leave at once when it hits a reply, for the soak test to hold against those that did.

@@ -26,6 +26,7 @@ impl Fault for Reorder {
     )];
     const REPORTS: &'static [(&'static str, &'static str)] =
         &[("ahead", "was it sent ahead of the one that was held?")];
+    const RELEASED_BY: Option<Passing> = Some(Passing::Reply);
 
     fn read(keys: &FaultKeys) -> Result<Self, KeyRefusal> {
         Ok(Self { most_ms: keys.number("ms").unwrap_or(5000), is_ahead: false })
@@ -40,10 +41,6 @@ impl Fault for Reorder {
         let most = Duration::from_millis(self.most_ms.into());
         out.hold(Some(most), &reply.frame());
         Some(most)
-    }
-
-    fn releases(&self, passing: Passing) -> bool {
-        passing == Passing::Reply
     }
 
     fn leaves(&self) -> Leaves {
