@@ -119,6 +119,37 @@ impl Bank {
             }
         }
     }
+
+    /// What returns at power-on, and how often it was stored. `station` is the one of the model that this
+    /// bank was made for.
+    pub fn kept(&self, model: &Model, station: usize) -> Kept {
+        let factory = factory(model, station);
+        let rows = model.map.rows().filter(|(_, row)| !row.volatile).filter_map(|(row, _)| {
+            let index = usize::from(row.0);
+            let (raw, writes) = (self.store[index], self.writes[index]);
+            (writes > 0 || raw != factory[index]).then_some(KeptRow { row, raw, writes })
+        });
+        Kept { rows: rows.collect(), saves: self.saves }
+    }
+
+    /// Puts a memory in, values in force with it.
+    pub fn recall(&mut self, model: &Model, kept: &Kept) {
+        for KeptRow { row, raw, writes } in &kept.rows {
+            self.preset(model, *row, *raw);
+            self.writes[usize::from(row.0)] = *writes;
+        }
+        self.saves = kept.saves;
+    }
+
+    /// How often `row` was stored by itself.
+    pub fn writes(&self, row: RowId) -> u32 {
+        self.writes[usize::from(row.0)]
+    }
+
+    /// How often all rows were stored at once.
+    pub fn saves(&self) -> u32 {
+        self.saves
+    }
 }
 
 fn factory(model: &Model, station: usize) -> Box<[u32]> {

@@ -6,14 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Most files that the inherent impls of one type may stand in.
 const MOST_FILES: usize = 2;
 
-/// Types whose impls still stand in more files, and in how many. The list may only get shorter.
-const SPREAD: &[(&str, usize)] = &[("Bank", 3)];
-
 /// Declared once for each platform, side by side.
 const TWINS: [&str; 1] = ["Presence"];
-
-/// Names that two types still share. The list may only get shorter.
-const SHARED: &[&str] = &["NoEffect"];
 
 #[test]
 fn a_type_name_is_declared_once() {
@@ -24,8 +18,7 @@ fn a_type_name_is_declared_once() {
         }
     }
     assert!(declared.len() > 200, "{}", declared.len());
-    let is_known = |name: &str| TWINS.contains(&name) || SHARED.contains(&name);
-    declared.retain(|name, files| files.len() > 1 && !is_known(name));
+    declared.retain(|name, files| files.len() > 1 && !TWINS.contains(&name.as_str()));
     assert!(declared.is_empty(), "{declared:#?}");
 }
 
@@ -38,10 +31,7 @@ fn impls_of_a_type_stand_together() {
         }
     }
     assert!(files.len() > 100, "{}", files.len());
-    files.retain(|name, files| {
-        let known = SPREAD.iter().find(|(known, _)| known == name);
-        files.len() > known.map_or(MOST_FILES, |(_, most)| *most)
-    });
+    files.retain(|_, files| files.len() > MOST_FILES);
     assert!(files.is_empty(), "{files:#?}");
 }
 
