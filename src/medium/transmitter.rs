@@ -98,7 +98,7 @@ const NEVER: Instant = Instant::END;
 
 /// A fault that holds a reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Holder {
+pub(super) struct ReplyHolder {
     /// The name of its kind.
     pub(super) kind: &'static str,
     /// What releases the reply before its instant, if anything does.
@@ -112,7 +112,7 @@ struct Entry {
     /// Does a reply end with it?
     is_last: bool,
     /// What holds it, and may release it before its instant.
-    holder: Option<Holder>,
+    holder: Option<ReplyHolder>,
 }
 
 /// What the wire of one link is doing.
@@ -369,7 +369,7 @@ pub struct Outgoing<'a> {
     /// When the drive begins to send its reply.
     pub(super) begins: Instant,
     /// What the fault holds a reply as.
-    pub(super) holder: Holder,
+    pub(super) holder: ReplyHolder,
     pub(super) rng: &'a mut Rng,
 }
 

@@ -3,7 +3,7 @@
 //! A new kind is a file in this folder and a line in the list below. Nothing else in the program knows it.
 
 use super::keys::{FaultKey, FaultKeys, KeyRefusal};
-use super::transmitter::{DriveReply, Holder, MasterRequest, Outgoing, Passing};
+use super::transmitter::{DriveReply, MasterRequest, Outgoing, Passing, ReplyHolder};
 use crate::rng::Rng;
 use crate::time::Duration;
 use serde::Serialize;
@@ -84,9 +84,9 @@ macro_rules! kinds {
             }
 
             /// How it holds a reply.
-            pub(super) fn holder(&self) -> Holder {
+            pub(super) fn holder(&self) -> ReplyHolder {
                 match self {
-                    $(Self::$Kind(_) => Holder { kind: $Kind::NAME, released_by: $Kind::RELEASED_BY },)*
+                    $(Self::$Kind(_) => ReplyHolder { kind: $Kind::NAME, released_by: $Kind::RELEASED_BY },)*
                 }
             }
         }
