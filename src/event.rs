@@ -5,7 +5,6 @@
 //! to say about its numbers travels with them ([`Decoder`]).
 
 mod decoder;
-mod drive_display;
 mod drive_event;
 mod no_effect;
 mod transaction;

@@ -28,7 +28,7 @@ pub use timer::Timer;
 pub use view::View;
 
 use crate::bank::{Bank, Causes, Gate, Kept};
-use crate::behaviour::{CommandControl, LevelControl, PowerControl, PowerStage};
+use crate::behaviour::{CommandControl, LevelControl, MotorTimer, PowerControl, PowerStage};
 use crate::event::{Decoder, DeviceFault, DeviceFaultChange, DriveEvent, Ignored, Ordered};
 use crate::model::{Model, Shows};
 use crate::motion::first_equal;
@@ -369,9 +369,10 @@ impl Drive {
         let is_due = |at: Instant, timer: Timer, last| {
             at <= self.parts.now && timer.wakes() == Some(part) && Some(timer) > last
         };
-        while let Some(timer) =
-            self.timers().filter(|(at, it)| is_due(*at, *it, last)).map(|(_, it)| it).min()
-        {
+        while let Some(timer) = {
+            let timers = self.timers(self.parts.axis.timers());
+            timers.filter(|(at, it)| is_due(*at, *it, last)).map(|(_, it)| it).min()
+        } {
             last = Some(timer);
             self.parts.effects.woken(timer);
         }
@@ -382,13 +383,16 @@ impl Drive {
 
     /// What will happen next by itself, and when.
     pub fn next_timer(&self) -> Option<(Instant, Timer)> {
-        self.timers().min()
+        self.timers(self.parts.axis.next_timer()).min()
     }
 
-    /// All its deadlines, in any order.
-    fn timers(&self) -> impl Iterator<Item = (Instant, Timer)> {
+    /// All its deadlines, in any order; of those of its axis, `of_axis`.
+    fn timers(
+        &self,
+        of_axis: impl IntoIterator<Item = (Instant, MotorTimer)>,
+    ) -> impl Iterator<Item = (Instant, Timer)> {
         let ready = self.parts.power.ready_at().map(|at| (at, Timer::Ready));
-        let axis = self.parts.axis.timers().map(|(at, timer)| (at, Timer::Axis(timer)));
+        let axis = of_axis.into_iter().map(|(at, timer)| (at, Timer::Axis(timer)));
         let chain = self.parts.axis.chain_due_at().map(|at| (at, Timer::Chain));
         let others = ready.into_iter().chain(axis).chain(chain);
         others.chain(self.parts.inputs.timers()).chain(self.parts.comms.timer())

@@ -2,7 +2,7 @@
 //!
 //! An action or a rising edge without effect is reported when it comes. A level that is
 //! active without effect is reported when it rises, and again when the reason changes; so is an edge that came too
-//! early, once it would act if it came anew ([`NoEffect::report_inactive`]). A bit that does not reach its signal is reported when
+//! early, once it would act if it came anew ([`NoEffectReports::report_inactive`]). A bit that does not reach its signal is reported when
 //! it is set. Nothing is told again because a master writes it again.
 
 use super::acts::{Acts, acts, asks_for_run};
@@ -21,7 +21,7 @@ const INPUTS: usize = Input::ALL.len();
 
 /// What has been told.
 #[derive(Debug)]
-pub(super) struct NoEffect {
+pub(super) struct NoEffectReports {
     /// What became of each input signal that is active.
     inputs: [Active; INPUTS],
     /// Bits that are set, by source: input words first, then rows of input bits.
@@ -66,7 +66,7 @@ struct Bits {
     untold: u16,
 }
 
-impl NoEffect {
+impl NoEffectReports {
     /// Nothing has been told.
     pub(super) fn new(wiring: &Wiring) -> Self {
         let words = wiring.input_words.as_ref().map_or(0, |words| words.rows.len());

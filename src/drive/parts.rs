@@ -10,7 +10,7 @@ use super::context::DriveContext;
 use super::device_faults::DeviceFaults;
 use super::effects::EffectQueue;
 use super::inputs::InputSignals;
-use super::no_effect::NoEffect;
+use super::no_effect::NoEffectReports;
 use super::registers::Registers;
 use super::setup::{IssuedCommand, Setup};
 use super::timer::TimerOwner;
@@ -66,7 +66,7 @@ pub(super) struct Parts {
     pub(super) power: PowerStage,
     pub(super) axis: Axis,
     pub(super) faults: DeviceFaults,
-    pub(super) no_effect: NoEffect,
+    pub(super) no_effect: NoEffectReports,
     pub(super) effects: EffectQueue,
     /// When the last thing happened to it.
     pub(super) now: Instant,
@@ -90,7 +90,7 @@ impl Parts {
             power: PowerStage::power_on(now, Duration::ZERO, off),
             axis: Axis::new(&model, setup, now),
             faults: DeviceFaults::default(),
-            no_effect: NoEffect::new(&model.wiring),
+            no_effect: NoEffectReports::new(&model.wiring),
             effects: EffectQueue::new(),
             now,
             powered: false,
@@ -134,7 +134,7 @@ impl Parts {
     }
 
     /// What tells of orders without effect, what it looks at, and where its effects go.
-    pub(super) fn split_no_effect(&mut self) -> (View<'_>, &mut NoEffect, &mut EffectQueue) {
+    pub(super) fn split_no_effect(&mut self) -> (View<'_>, &mut NoEffectReports, &mut EffectQueue) {
         let Self { registers, inputs, power, faults, axis, comms, effects, no_effect, .. } = self;
         let active = inputs.active();
         let cx = DriveContext { now: self.now, registers, inputs: active, power, faults };

@@ -1,13 +1,15 @@
 //! What a drive does without being asked, or as a consequence. The documentation of variants and fields is that of the
 //! public log: the schema and docs/log.md are made from it.
 
+mod display;
+
 use super::DeviceFault;
 use super::decoder::{Decoder, RowName, TerminalName};
-use super::drive_display as shown;
 use super::no_effect::{Ignored, NoEffect};
 use crate::serial::Mode;
 use crate::time::Duration;
 use crate::vocabulary::{AlarmCause, Condition, HomeEnd, HomingStep};
+use display as shown;
 use serde::Serialize;
 
 /// Something that happened in a drive.

@@ -80,10 +80,10 @@ def test_check_tells_every_problem_with_its_place(tmp_path):
     done = drivemu("check", REPOSITORY / "models/k-series.yaml", broken)
     assert done.returncode == 2
     said = done.stdout + done.stderr
-    where = [line.split(": ")[0] for line in said.splitlines() if line.startswith(str(broken))]
-    assert all(re.fullmatch(r".*broken\.yaml:\d+:\d+", place) for place in where)
+    where = re.findall(rf"^ *--> {re.escape(str(broken))}:(\d+):\d+$", said, re.MULTILINE)
+    assert len(where) == said.count("error: "), said
     line = 1 + bad[: bad.index("nam: Homing")].count("\n")
-    assert any(f":{line}:" in place for place in where), said
+    assert str(line) in where, said
     assert re.search(r"^ *\| +\^+", said, re.MULTILINE), said
     # The same file fails at the door of `run`.
     assert f"broken.yaml:{line}:" in refused(drivemu("run", broken, *TCP), USAGE)

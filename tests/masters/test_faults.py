@@ -104,5 +104,5 @@ def test_the_retries_of_pymodbus_move_twice(emulate, kind, moved):
     with ModbusTcpClient(endpoint.host, port=endpoint.port, timeout=0.5) as master:
         assert master.write_registers(0x0024, [0, 1000], device_id=1).registers is not None
         assert not master.write_register(0x0027, 1, device_id=1).isError()
-        emulator.logged(rf"stands at {moved}$")
-    assert ("repeated_command: move_start again" in emulator.log) == (kind == "lose_reply")
+        emulator.logged(rf"stopped at {moved}$")
+    assert ("move_start repeated" in emulator.log) == (kind == "lose_reply")

@@ -109,4 +109,4 @@ def test_nobody_takes_others_for_the_drive(line, client, behaviour):
             assert master.connect()
     assert 100 in seen and seen <= {100, "noticed"}
     emulator.logged(r"foreign request to unit \d+: ")
-    emulator.logged(r"foreign answer of unit \d+: ")
+    emulator.logged(r"foreign reply from unit \d+: ")

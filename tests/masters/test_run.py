@@ -163,7 +163,8 @@ def test_an_address_that_is_none():
 def test_a_broken_bench(tmp_path):
     bench = tmp_path / "cell.yaml"
     bench.write_text("lines:\n  - pty: auto\n    drives:\n      - {unit: 1, modell: hcfa-x}\n")
-    assert re.search(r"cell\.yaml:4:\d+: .*modell", refused(drivemu("run", bench), USAGE))
+    said = refused(drivemu("run", bench), USAGE)
+    assert re.search(r"modell: unknown key\n *--> .*cell\.yaml:4:\d+$", said, re.MULTILINE), said
 
 
 def test_the_ready_file(emulate):

@@ -51,6 +51,8 @@ impl MotorTimer {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct MotorTimers {
     at: [Option<Instant>; MotorTimer::ALL.len()],
+    /// The first of them: it is asked for at each request, and set only when a motion changes.
+    next: Option<(Instant, MotorTimer)>,
     /// Where the axis is to run against a hard stop.
     hit_at: i64,
     /// The index mark that is to be passed.
@@ -61,6 +63,7 @@ impl MotorTimers {
     /// Sets a deadline, or stops it.
     pub(super) fn set(&mut self, timer: MotorTimer, at: Option<Instant>) {
         self.at[timer as usize] = at;
+        self.next = self.set_ones().min();
     }
 
     pub(super) fn set_hard_stop(&mut self, hit: Option<Hit>) {
@@ -85,12 +88,16 @@ impl MotorTimers {
 
     /// The next deadline.
     pub(super) fn next(&self) -> Option<(Instant, MotorTimer)> {
-        self.set_ones().min()
+        self.next
     }
 
     /// Stops `timer` if it has expired by `now`. Has it?
     pub(super) fn take(&mut self, timer: MotorTimer, now: Instant) -> bool {
-        self.at[timer as usize].take_if(|at| *at <= now).is_some()
+        let has_expired = self.at[timer as usize].is_some_and(|at| at <= now);
+        if has_expired {
+            self.set(timer, None);
+        }
+        has_expired
     }
 
     /// Stops the first one that has expired by `now`, but for switches, which are not the axis's to look at.

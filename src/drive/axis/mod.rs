@@ -141,6 +141,11 @@ impl Axis {
     }
 
     /// What the motor will do by itself.
+    pub(super) fn next_timer(&self) -> Option<(Instant, MotorTimer)> {
+        self.motor.next_timer()
+    }
+
+    /// All that the motor waits for.
     pub(super) fn timers(&self) -> impl Iterator<Item = (Instant, MotorTimer)> {
         self.motor.timers()
     }

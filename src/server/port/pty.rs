@@ -7,7 +7,7 @@
 //! It holds its own descriptor of the side that programs open. Otherwise the first program to close it
 //! would hang up the line, and reading would fail until another one came. The price: the kernel never sees
 //! a *last* close, so it discards nothing that a program left unread and frees no lock that a killed program
-//! had put on the terminal. [`Presence`] counts who is there, so that we can do both.
+//! had put on the terminal. `Presence` counts who is there, so that we can do both.
 
 use std::ffi::OsString;
 use std::io;

@@ -1,7 +1,7 @@
 //! Events of drives as text, and those of their fields that JSON tells in another shape.
 
-use super::drive_event::{ChainEnd, DeviceFaultChange, DriveEvent, MilliRpm, Replanned};
-use super::{DeviceFault, on_off};
+use super::super::{DeviceFault, on_off};
+use super::{ChainEnd, DeviceFaultChange, DriveEvent, MilliRpm, Replanned};
 use crate::time::Duration;
 use crate::vocabulary::{AlarmCause, Condition, HomingStep, Named, SignalEdge, Then, Until};
 use serde::{Serialize, Serializer};
@@ -183,7 +183,7 @@ pub(super) struct ChainEndFields {
     /// The number of the segment.
     segment: u16,
     /// Why it cannot follow, as a word of the list of reasons.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = super::no_effect::reason_names())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = super::super::no_effect::reason_names())))]
     reason: &'static str,
     /// Why, as a sentence.
     why: String,
