@@ -5,7 +5,7 @@ use super::names::Names;
 use super::uses::{Uses, one_word};
 use crate::model::raw::{RawHold, RawShows, RawTerminals};
 use crate::model::{Digit, HoldTime, Monitor, NotSimulated, RowId, Shows, Terminals};
-use crate::problem::{At, Path, Problem};
+use crate::problem::{At, Path, Problem, is_unread};
 use crate::units::Dimension;
 use std::collections::BTreeMap;
 
@@ -161,7 +161,12 @@ pub(super) fn words(
     path: &Path,
     names: &mut Names,
 ) -> (Vec<RowId>, Vec<RowId>) {
-    let rows = names.row_list(registers, &path.key("registers"));
+    let of_registers = path.key("registers");
+    if registers.is_empty() && !is_unread(names.problems, &of_registers) {
+        let what = "words of signals need at least one register";
+        names.report(Problem::value(of_registers.clone(), what));
+    }
+    let rows = names.row_list(registers, &of_registers);
     for (i, row) in rows.iter().enumerate() {
         one_word(*row, &path.key("registers").index(i), names);
     }
@@ -191,6 +196,10 @@ pub(super) fn positions<S: Copy>(
     names: &mut Names,
 ) -> Vec<(u16, S)> {
     let Layout { moved, words, by_terminals } = *layout;
+    // Words without registers: that is reported where they are read.
+    if words == 0 {
+        return Vec::new();
+    }
     for code in moved.keys().filter(|code| !codes.iter().any(|(it, _)| it == *code)) {
         let what = format!("function number {code} has no signal in `codes`");
         names.report(Problem::key(path.key("positions").key(code), what));
