@@ -7,6 +7,7 @@
 
 mod blank;
 mod reader;
+mod variant;
 
 use super::tree::{MapEntry, Node};
 use super::{At, Mark, Path, Problem, bounds};

@@ -1,10 +1,9 @@
 //! What stands in for a value that is missing or does not fit: nothing, in whatever form is asked for.
 
 use super::Misfit;
+use super::variant::Variant;
 use serde::de::value::BorrowedStrDeserializer;
-use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error, MapAccess, SeqAccess, VariantAccess, Visitor,
-};
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 /// 0, false, no text, no items, no option; of the words of an enum the first; a struct of blanks.
 pub(super) struct Blank;
@@ -65,7 +64,7 @@ impl<'de> Deserializer<'de> for Blank {
         visitor: V,
     ) -> Result<V::Value, Misfit> {
         let first = variants.first().ok_or_else(|| Misfit::custom("no variant"))?;
-        visitor.visit_enum(BlankVariant(first))
+        visitor.visit_enum(Variant { name: first, value: self })
     }
 
     serde::forward_to_deserialize_any! {
@@ -132,43 +131,5 @@ impl<'de> MapAccess<'de> for BlankFields {
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Misfit> {
         seed.deserialize(Blank)
-    }
-}
-
-struct BlankVariant(&'static str);
-
-impl<'de> EnumAccess<'de> for BlankVariant {
-    type Error = Misfit;
-    type Variant = Blank;
-
-    fn variant_seed<V: DeserializeSeed<'de>>(
-        self,
-        seed: V,
-    ) -> Result<(V::Value, Self::Variant), Misfit> {
-        Ok((seed.deserialize(BorrowedStrDeserializer::new(self.0))?, Blank))
-    }
-}
-
-impl<'de> VariantAccess<'de> for Blank {
-    type Error = Misfit;
-
-    fn unit_variant(self) -> Result<(), Misfit> {
-        Ok(())
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Misfit> {
-        seed.deserialize(self)
-    }
-
-    fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Misfit> {
-        self.deserialize_tuple(len, visitor)
-    }
-
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Misfit> {
-        self.deserialize_struct("", fields, visitor)
     }
 }

@@ -7,13 +7,12 @@
 //! `a list`, `a map with KEY` (`or KEY`) or `a map`; `anything else` fits always.
 
 use super::blank::{Blank, Nothing};
+use super::variant::Variant;
 use super::{Holder, Misfit, MisfitCause, Pass, Trail};
 use crate::problem::tree::{Content, MapEntry, Node};
 use crate::problem::{At, Problem, bounds, suggest};
 use serde::de::value::BorrowedStrDeserializer;
-use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor,
-};
+use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
 /// Reads one value.
 pub(super) struct Reader<'p, 's, 'de> {
@@ -230,7 +229,7 @@ impl<'de> Deserializer<'de> for Reader<'_, '_, 'de> {
         visitor: V,
     ) -> Result<V::Value, Misfit> {
         let (node, trail) = (self.node, self.trail);
-        let read = visitor.visit_enum(Variant::of(self, variants)?);
+        let read = visitor.visit_enum(variant(self, variants)?);
         read.map_err(|misfit| misfit.located(node, &trail))
     }
 
@@ -355,26 +354,21 @@ impl<'de> MapAccess<'de> for Entries<'_, '_, 'de> {
     }
 }
 
-/// The variant that a value is.
-struct Variant<'p, 's, 'de> {
-    name: &'static str,
+/// Which of `variants` the value of `reader` is.
+fn variant<'p, 's, 'de>(
     reader: Reader<'p, 's, 'de>,
-}
-
-impl<'p, 's, 'de> Variant<'p, 's, 'de> {
-    /// Which of `variants` the value of `reader` is.
-    fn of(reader: Reader<'p, 's, 'de>, variants: &[&'static str]) -> Result<Self, Misfit> {
-        if variants.iter().any(|name| name.contains(' ')) {
-            let name = variants.iter().copied().find(|name| fits(name, reader.node));
-            let name = name.ok_or_else(|| reader.unexpected(&variants.join(" or ")))?;
-            return Ok(Self { name, reader });
-        }
+    variants: &[&'static str],
+) -> Result<Variant<Reader<'p, 's, 'de>>, Misfit> {
+    let mut names = variants.iter().copied();
+    let is_shapes = variants.iter().any(|name| name.contains(' '));
+    let name = if is_shapes {
+        let name = names.find(|name| fits(name, reader.node));
+        name.ok_or_else(|| reader.unexpected(&variants.join(" or ")))
+    } else {
         let text = reader.node.as_text();
-        match variants.iter().copied().find(|name| text == Some(*name)) {
-            Some(name) => Ok(Self { name, reader }),
-            None => Err(unknown(&reader, variants)),
-        }
-    }
+        names.find(|name| text == Some(*name)).ok_or_else(|| unknown(&reader, variants))
+    };
+    Ok(Variant { name: name?, value: reader })
 }
 
 fn unknown(reader: &Reader<'_, '_, '_>, variants: &[&str]) -> Misfit {
@@ -405,42 +399,5 @@ fn fits(shape: &str, node: &Node) -> bool {
             None => is("a map"),
         },
         Content::Null | Content::Bool(_) => false,
-    }
-}
-
-impl<'p, 's, 'de> EnumAccess<'de> for Variant<'p, 's, 'de> {
-    type Error = Misfit;
-    type Variant = Reader<'p, 's, 'de>;
-
-    fn variant_seed<V: DeserializeSeed<'de>>(
-        self,
-        seed: V,
-    ) -> Result<(V::Value, Self::Variant), Misfit> {
-        let Self { name, reader } = self;
-        Ok((seed.deserialize(BorrowedStrDeserializer::new(name))?, reader))
-    }
-}
-
-impl<'de> VariantAccess<'de> for Reader<'_, '_, 'de> {
-    type Error = Misfit;
-
-    fn unit_variant(self) -> Result<(), Misfit> {
-        Ok(())
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Misfit> {
-        seed.deserialize(self)
-    }
-
-    fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Misfit> {
-        self.deserialize_tuple(len, visitor)
-    }
-
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Misfit> {
-        self.deserialize_struct("", fields, visitor)
     }
 }
