@@ -13,7 +13,7 @@ use crate::model::{Choices, Model};
 use crate::problem::decode::{decode, listed};
 use crate::problem::tree::Node;
 use crate::problem::{
-    At, Path, Places, Problem, Seg, bounds, has_unread, is_unread, parse as parse_yaml, settle,
+    At, Path, Problem, Seg, bounds, has_unread, is_unread, parse as parse_yaml, placed,
 };
 use crate::serial::Settings;
 use crate::time::Instant;
@@ -54,13 +54,11 @@ pub fn parse_saved(
     let (file, problems) = parse_yaml(text)?;
     let mut reader = BenchReader { library, saved, models: BTreeMap::new(), problems };
     let bench = reader.bench(&file);
-    let mut problems = reader.problems;
+    let problems = reader.problems;
     if problems.is_empty() {
         return Ok(bench);
     }
-    let mut places = Places::new(&file);
-    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
-    Err(problems)
+    Err(placed(problems, &file))
 }
 
 struct BenchReader<'a> {

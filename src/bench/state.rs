@@ -12,7 +12,7 @@ use crate::event::DriveId;
 use crate::model::{Model, Shows, Station};
 use crate::problem::decode::{decode, named};
 use crate::problem::tree::Node;
-use crate::problem::{Path, Places, Problem, parse, settle, suggest};
+use crate::problem::{Path, Problem, parse, placed, suggest};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_yaml::Value;
@@ -170,12 +170,6 @@ impl Saved {
         }
         Some(KeptRow { row, raw: of_map.kind.raw(value), writes })
     }
-}
-
-fn placed(mut problems: Vec<Problem>, file: &Node) -> Vec<Problem> {
-    let mut places = Places::new(file);
-    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
-    problems
 }
 
 /// A file of a later format: all else that is odd about it is news, not mistakes.

@@ -161,11 +161,12 @@ fn bench(args: &RunArgs, saved: &mut Saved) -> Result<(Bench, PathBuf, Vec<PathB
     let target = args.target.as_deref().unwrap_or(Builtin::default_name());
     refuse_swallowed_model(args)?;
     let (file, text) = FileLibrary::new("").fetch(target).map_err(CliError::invalid)?;
-    if kind_of(&text) == "scenario" {
+    let kind = kind_of(&text);
+    if kind == "scenario" {
         let text = format!("{file} is a scenario; write `run MODEL --scenario {file}`");
         return Err(CliError::invalid(text));
     }
-    if kind_of(&text) == "bench" {
+    if kind == "bench" {
         refuse_flags_of_a_line(args)?;
         let base = Path::new(target).parent().unwrap_or(Path::new("")).to_owned();
         let library = FileLibrary::new(&base);

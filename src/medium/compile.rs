@@ -7,7 +7,7 @@ use super::raw::{COMMON_KEYS, RawAct, RawFault, RawFaultRegister, RawFunctions};
 use super::{FaultEffect, FaultKind, FaultRule, LineBehaviour, When, spec};
 use crate::problem::decode::decode;
 use crate::problem::tree::Node;
-use crate::problem::{Path, Places, Problem, is_unread, settle, suggest};
+use crate::problem::{Path, Problem, is_unread, placed, suggest};
 use crate::rng::Chance;
 use crate::time::{Duration, Instant};
 use crate::units::parse_integer;
@@ -64,9 +64,7 @@ pub fn parse(
     if problems.is_empty() {
         return Ok(rules.unwrap_or_default());
     }
-    let mut places = Places::new(&tree);
-    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
-    Err(problems)
+    Err(placed(problems, &tree))
 }
 
 /// Compiles the rule at `path` for `site`, where rules called `taken` stand already. A preset gives several

@@ -18,6 +18,7 @@ pub use parse::parse;
 pub use place::{Path, Places, Seg};
 
 use std::collections::BTreeSet;
+use tree::Node;
 
 /// One thing that is wrong with a file, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -118,6 +119,14 @@ pub fn is_unread(problems: &[Problem], path: &Path) -> bool {
 /// Could the value at `path`, or anything below it, not be read?
 pub fn has_unread(problems: &[Problem], path: &Path) -> bool {
     problems.iter().any(|it| it.unread && it.path.starts_with(path))
+}
+
+/// The `problems` of `file` as they are to be told: without consequences, each at its place or at what is nearest to it,
+/// in the order of the file.
+pub fn placed(mut problems: Vec<Problem>, file: &Node) -> Vec<Problem> {
+    let mut places = Places::new(file);
+    settle(&mut problems, |problem| Some(places.find_nearest(&problem.path, problem.at)));
+    problems
 }
 
 /// Leaves out consequences, gives each problem the place that `find` has for it, and sorts them by that.

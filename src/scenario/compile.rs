@@ -13,9 +13,7 @@ use crate::bus::Command;
 use crate::event::DriveId;
 use crate::problem::decode::{decode, listed};
 use crate::problem::tree::Node;
-use crate::problem::{
-    Path, Places, Problem, bounds, has_unread, parse as parse_yaml, settle, suggest,
-};
+use crate::problem::{Path, Problem, bounds, has_unread, parse as parse_yaml, placed, suggest};
 use crate::time::{Duration, Instant, parse_duration};
 use crate::vocabulary::{Named, Output, Quantity};
 
@@ -41,13 +39,11 @@ fn read(text: &str, lines: Option<&[BenchLine]>) -> Result<Scenario, Vec<Problem
     let sites = lines.map(|lines| lines.iter().map(ScenarioLine::new).collect());
     let mut reader = ScenarioReader { sites, problems };
     let scenario = reader.scenario(&file);
-    let mut problems = reader.problems;
+    let problems = reader.problems;
     if problems.is_empty() {
         return Ok(scenario);
     }
-    let mut places = Places::new(&file);
-    settle(&mut problems, |it| Some(places.find_nearest(&it.path, it.at)));
-    Err(problems)
+    Err(placed(problems, &file))
 }
 
 struct ScenarioReader<'a> {
