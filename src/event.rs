@@ -156,7 +156,7 @@ pub enum EventKind {
         drive: DriveId,
         /// The unit address of the drive, 0 to 255.
         unit: u8,
-        /// How a serial line was set then.
+        /// How a serial line was set then, where the event may change which drives it reaches.
         #[serde(skip)]
         line: Option<Mode>,
         /// What.

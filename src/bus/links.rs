@@ -7,29 +7,21 @@ use crate::medium::LinkId;
 use crate::time::Instant;
 use crate::wire::function::EXCEPTION;
 use crate::wire::rtu::BadCrc;
-use crate::wire::{Adu, BROADCAST, Frame, Inline, Pdu};
+use crate::wire::{Adu, BROADCAST, Coding, Frame, Inline, Pdu};
 use std::collections::BTreeMap;
 
 /// The links of a line. A serial port has one, a TCP port has one for each client.
 #[derive(Debug, Default)]
 pub(super) struct Links {
-    by_id: BTreeMap<LinkId, Link>,
+    by_id: BTreeMap<LinkId, Line>,
     next: u32,
-}
-
-#[derive(Debug)]
-struct Link {
-    line: Line,
-    /// A client of Modbus TCP.
-    is_tcp: bool,
 }
 
 impl Links {
     pub fn open(&mut self, framing: Framing) -> LinkId {
         let id = LinkId(self.next);
         self.next += 1;
-        let is_tcp = framing == Framing::Mbap;
-        self.by_id.insert(id, Link { line: Line::new(framing), is_tcp });
+        self.by_id.insert(id, Line::new(framing));
         id
     }
 
@@ -39,23 +31,23 @@ impl Links {
 
     /// Tells frames on all serial links apart in another way. What was half received is forgotten.
     pub fn reframe_all(&mut self, framing: Framing) {
-        let serial = self.by_id.values_mut().filter(|link| !link.is_tcp);
-        serial.for_each(|link| link.line = Line::new(framing));
+        let serial = self.by_id.values_mut().filter(|line| !is_tcp(line));
+        serial.for_each(|line| *line = Line::new(framing));
     }
 
     /// The line of `link`, unless that is closed.
     pub fn line(&self, link: LinkId) -> Option<&Line> {
-        self.by_id.get(&link).map(|it| &it.line)
+        self.by_id.get(&link)
     }
 
     /// All of them.
     pub fn lines(&self) -> impl Iterator<Item = (LinkId, &Line)> {
-        self.by_id.iter().map(|(id, link)| (*id, &link.line))
+        self.by_id.iter().map(|(id, line)| (*id, line))
     }
 
     /// Those that are no Modbus TCP.
     pub fn serial(&self) -> impl Iterator<Item = (LinkId, &Line)> {
-        self.by_id.iter().filter(|(_, link)| !link.is_tcp).map(|(id, link)| (*id, &link.line))
+        self.lines().filter(|(_, line)| !is_tcp(line))
     }
 
     /// When silence will end what was half received, by link.
@@ -66,15 +58,21 @@ impl Links {
     /// Takes bytes that arrived on `link` at `now`. Is it open?
     pub fn receive(&mut self, now: Instant, link: LinkId, bytes: &[u8]) -> bool {
         let line = self.by_id.get_mut(&link);
-        line.map(|it| it.line.receive(now, bytes)).is_some()
+        line.map(|line| line.receive(now, bytes)).is_some()
     }
 
     /// What `link` has received next if there was silence until `now`.
     pub fn next(&mut self, now: Instant, link: LinkId, stations: &Stations) -> Option<LineInput> {
-        let Link { line, is_tcp } = self.by_id.get_mut(&link)?;
+        let line = self.by_id.get_mut(&link)?;
+        let is_tcp = is_tcp(line);
         let event = line.next(now, stations.units())?;
-        Some(LineInput::of(event, *is_tcp, stations))
+        Some(LineInput::of(event, is_tcp, stations))
     }
+}
+
+/// A client of Modbus TCP?
+fn is_tcp(line: &Line) -> bool {
+    line.coding() == Coding::Mbap
 }
 
 /// What a line has received, detached from its buffer so that drives and links can be touched again.

@@ -330,7 +330,7 @@ impl Bus {
                     Transaction { drive, unit, decoder, request, reply, refusal }.into()
                 });
                 let arrives = later.map(|later| now + later);
-                repeated = self.repeat_detector.executed(now, id, request, issued, arrives);
+                repeated = self.repeat_detector.executed(now, id, &request, issued, arrives);
             }
         }
         hit.into_iter().for_each(|hit| self.emit(EventKind::Fault(hit.finish())));
@@ -358,8 +358,10 @@ impl Bus {
             let station = self.stations.drive_mut(drive);
             let unit = station.unit();
             let refusal = station.request(self.now, &request).err();
-            let decoder = station.decoder();
-            self.emit(Broadcast { drive, unit, decoder, request, refusal }.into());
+            self.emit_with(|bus| {
+                let decoder = bus.drive(drive).decoder();
+                Broadcast { drive, unit, decoder, request, refusal }.into()
+            });
             self.after_drive(drive);
         }
     }
@@ -454,9 +456,13 @@ impl Bus {
                     continue;
                 }
             };
-            moved |= event.changes_reach();
-            let (unit, line) = (self.drive(id).unit(), self.stations.agreed_mode(self.mode));
-            self.emit(EventKind::Drive { drive: id, unit, line, event });
+            let changes_reach = event.changes_reach();
+            moved |= changes_reach;
+            self.emit_with(|bus| {
+                // It takes a look at every drive, and only such an event is read with it.
+                let line = if changes_reach { bus.stations.agreed_mode(bus.mode) } else { None };
+                EventKind::Drive { drive: id, unit: bus.drive(id).unit(), line, event }
+            });
         }
         if moved {
             // Where all drives of a serial line agree on another mode, the line goes with them.

@@ -31,16 +31,16 @@ impl RepeatDetector {
         &mut self,
         now: Instant,
         id: DriveId,
-        request: Pdu,
+        request: &Pdu,
         issued: Option<IssuedCommand>,
         arrives: Option<Instant>,
     ) -> Option<(Action, u64)> {
         let waits = |arrives: Option<Instant>| arrives.is_none_or(|at| at > now);
         let before = self.orders.remove(&id);
-        let again = before.is_some_and(|it| waits(it.arrives) && it.request == request);
+        let again = before.is_some_and(|it| waits(it.arrives) && it.request == *request);
         let IssuedCommand { action, obeyed } = issued?;
         if waits(arrives) && (obeyed || again) {
-            self.orders.insert(id, LastCommand { request, arrives });
+            self.orders.insert(id, LastCommand { request: *request, arrives });
         }
         again.then(|| {
             let count = self.repeated.entry(id).or_default();

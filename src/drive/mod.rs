@@ -179,10 +179,11 @@ impl Drive {
     }
 
     fn answer_read(&mut self, span: Span) -> Result<Response<'_>, Refusal> {
-        let (bank, model) = (self.parts.registers.bank(), self.parts.registers.model());
+        let Self { parts, read } = self;
+        let (bank, model) = (parts.registers.bank(), parts.registers.model());
         let plan = bank.plan_read(model, span)?;
-        let (view, mut read) = (self.at(self.parts.now), self.read);
-        let (dark, mut seen) = (self.parts.no_effect.dark(&self.parts.registers), 0);
+        let view = parts.at(parts.now);
+        let (dark, mut seen) = (parts.no_effect.dark(&parts.registers), 0);
         let show = |row| {
             if dark != 0
                 && let Some(Shows::OutputWord(word)) = model.wiring.shows(row)
@@ -191,11 +192,10 @@ impl Drive {
             }
             view.show(row)
         };
-        let len = plan.read(bank, model, show, &mut read);
-        self.read = read;
-        let (view, no_effect, out) = self.parts.split_no_effect();
+        let len = plan.read(bank, model, show, read);
+        let (view, no_effect, out) = parts.split_no_effect();
         no_effect.note_read(view.axis().context(), out, seen);
-        Ok(Response::Read(&self.read[..len]))
+        Ok(Response::Read(&read[..len]))
     }
 
     fn write(&mut self, span: Span, words: Words<'_>) -> Result<(), Refusal> {
