@@ -17,7 +17,8 @@
 //!
 //! `docs/ARCHITECTURE.md` draws the map of its modules.
 
-#![cfg_attr(not(feature = "internals"), allow(dead_code, unused_imports))]
+// Without the program nothing makes lines of the log.
+#![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
 pub mod bench;
 pub mod bus;

@@ -11,7 +11,7 @@ mod write_rate;
 
 pub use causes::Causes;
 pub use kept::{Kept, KeptRow};
-pub use plan::{ReadPlan, WritePlan};
+pub use plan::WritePlan;
 pub use write_rate::{OFTEN, SOON, WriteRate, is_worn};
 
 use crate::model::{Model, RegisterOrder, Row, RowId, WordOrder};

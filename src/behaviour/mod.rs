@@ -12,7 +12,6 @@ pub use motor::{
     Commands, Control, HomeOrder, Jog, Motor, MotorLevels, MotorTimer, Phase, Ramp, Slope,
 };
 pub use power::{
-    CommandControl, LevelControl, PowerControl, PowerDemand, PowerLevels, PowerStage, PowerState,
-    Trip,
+    CommandControl, LevelControl, PowerControl, PowerLevels, PowerStage, Trip,
 };
 pub use watchdog::Watchdog;

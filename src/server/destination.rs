@@ -78,16 +78,6 @@ impl Destination {
         &self.path
     }
 
-    /// Where that leads.
-    pub fn target(&self) -> &Path {
-        &self.target
-    }
-
-    /// Is it a file, or nothing yet? Then it can be replaced and removed.
-    pub fn is_file(&self) -> bool {
-        self.kind == FileKind::File
-    }
-
     /// Is it our own stdout or stderr?
     pub fn is_own_stream(&self) -> bool {
         matches!(self.kind, FileKind::Stdout | FileKind::Stderr)

@@ -22,7 +22,7 @@ pub use clock::Clock;
 pub use destination::Destination;
 pub use diagnostics::{Diagnostics, diagnose, said, say};
 pub use input::{FileLibrary, is_path, plain, read_text};
-pub use line_server::{Inbox, InboxError, LineHandle, LineServer, Subscriber};
+pub use line_server::{InboxError, LineHandle, LineServer};
 pub use logger::{LogFormat, Logger};
 pub use paths::PathClaims;
 pub use run::{Ended, Judged, Play, RunError, RunOptions, run};

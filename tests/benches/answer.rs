@@ -64,7 +64,7 @@ fn median(calls: u32, mut call: impl FnMut()) -> f64 {
 #[cfg(feature = "cli")]
 mod pseudo_terminal {
     use super::*;
-    use drivemu::server::port::Pty;
+    use drivemu::server::port::pty::Pty;
     use std::future::poll_fn;
     use std::io::{Read, Write};
     use std::path::PathBuf;

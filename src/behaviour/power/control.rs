@@ -192,15 +192,15 @@ mod tests {
 
     #[test]
     fn each_command_and_its_state() {
-        assert_eq!(by_commands(true).state(), PowerState::OperationEnabled);
+        assert_eq!(by_commands(true).state, PowerState::OperationEnabled);
         let mut stage = by_commands(false);
-        assert_eq!(stage.state(), PowerState::ReadyToSwitchOn);
+        assert_eq!(stage.state, PowerState::ReadyToSwitchOn);
         assert_eq!(stage.order(true), Ok(()));
         assert_eq!(stage.order(true), Err(Ignored::AlreadyOn));
         assert!(stage.is_latched_on());
         assert_eq!(stage.order(false), Ok(()));
         assert_eq!(stage.order(false), Err(Ignored::AlreadyOff));
-        assert_eq!(stage.state(), PowerState::ReadyToSwitchOn);
+        assert_eq!(stage.state, PowerState::ReadyToSwitchOn);
     }
 
     #[test]
@@ -209,23 +209,23 @@ mod tests {
         stage.set_levels(release(true));
         assert_eq!(stage.order(true), Err(Ignored::Released));
         stage.set_levels(release(false));
-        assert_eq!(stage.state(), PowerState::ReadyToSwitchOn);
+        assert_eq!(stage.state, PowerState::ReadyToSwitchOn);
         stage.trip(FORCED, false);
         assert_eq!(stage.order(true), Err(Ignored::Alarm));
         assert_eq!(stage.reset(), Ok(()));
-        assert_eq!(stage.state(), PowerState::ReadyToSwitchOn);
+        assert_eq!(stage.state, PowerState::ReadyToSwitchOn);
     }
 
     #[test]
     fn a_command_from_before_outlasts_release_and_alarm() {
         let mut stage = by_commands(true);
         stage.set_levels(release(true));
-        assert_eq!(stage.state(), PowerState::SwitchOnDisabled);
+        assert_eq!(stage.state, PowerState::SwitchOnDisabled);
         stage.set_levels(release(false));
-        assert_eq!(stage.state(), PowerState::OperationEnabled);
+        assert_eq!(stage.state, PowerState::OperationEnabled);
         stage.trip(FORCED, false);
         assert_eq!(stage.reset(), Ok(()));
-        assert_eq!(stage.state(), PowerState::OperationEnabled);
+        assert_eq!(stage.state, PowerState::OperationEnabled);
     }
 
     #[test]
@@ -250,7 +250,7 @@ mod tests {
         let state = |levels| {
             let mut stage = by_levels();
             stage.set_levels(levels);
-            (stage.state(), stage.why_off())
+            (stage.state, stage.why_off())
         };
         let off = (PowerState::ReadyToSwitchOn, Ignored::PowerOff);
         assert_eq!(state(levels(false, false, false)), off);

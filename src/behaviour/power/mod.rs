@@ -86,11 +86,6 @@ impl PowerStage {
         self.enter(PowerState::NotReadyToSwitchOn);
     }
 
-    /// The state that it is in.
-    pub fn state(&self) -> PowerState {
-        self.state
-    }
-
     /// Is the power stage on?
     pub fn is_enabled(&self) -> bool {
         self.state.is_on()
@@ -282,7 +277,7 @@ mod tests {
     fn not_enabled_before_it_is_ready() {
         let mut stage = stage(Duration::from_secs(1));
         stage.set_levels(ENABLE);
-        assert_eq!(stage.state(), PowerState::NotReadyToSwitchOn);
+        assert_eq!(stage.state, PowerState::NotReadyToSwitchOn);
         assert_eq!((stage.is_ready(), stage.why_off()), (false, Ignored::NotReady));
         assert_eq!(stage.ready_at(), Some(Instant::from_millis(1000)));
         stage.advance(Instant::from_millis(1000));
@@ -293,11 +288,11 @@ mod tests {
     fn a_demand_that_still_holds_enables_again_after_a_reset() {
         let mut stage = enabled();
         stage.trip(FORCED, false);
-        assert_eq!(stage.state(), PowerState::Fault);
+        assert_eq!(stage.state, PowerState::Fault);
         assert_eq!(stage.reset(), Ok(()));
         let all = [ALARM, Effect::Enabled(false), Effect::AlarmCleared, Effect::Enabled(true)];
         assert_eq!(effects(&mut stage), all);
-        assert_eq!(stage.state(), PowerState::OperationEnabled);
+        assert_eq!(stage.state, PowerState::OperationEnabled);
     }
 
     #[test]
@@ -317,11 +312,11 @@ mod tests {
     fn power_stays_on_until_it_has_braked() {
         let mut stage = enabled();
         stage.trip(FORCED, true);
-        assert_eq!(stage.state(), PowerState::FaultReactionActive);
+        assert_eq!(stage.state, PowerState::FaultReactionActive);
         assert!(stage.is_enabled() && stage.is_braking() && !stage.is_ready());
         stage.braked();
         assert_eq!(effects(&mut stage), [ALARM, Effect::Enabled(false)]);
-        assert_eq!(stage.state(), PowerState::Fault);
+        assert_eq!(stage.state, PowerState::Fault);
     }
 
     #[test]
@@ -330,7 +325,7 @@ mod tests {
         stage.trip(FORCED, true);
         assert_eq!(stage.reset(), Ok(()));
         assert_eq!(effects(&mut stage), [ALARM, Effect::AlarmCleared]);
-        assert_eq!(stage.state(), PowerState::OperationEnabled);
+        assert_eq!(stage.state, PowerState::OperationEnabled);
     }
 
     #[test]
@@ -343,7 +338,7 @@ mod tests {
                 false => stage.trip(FORCED, false),
             }
             stage.set_levels(ENABLE);
-            assert_eq!(stage.state(), PowerState::Fault);
+            assert_eq!(stage.state, PowerState::Fault);
         }
     }
 
@@ -352,7 +347,7 @@ mod tests {
         let mut stage = stage(Duration::ZERO);
         stage.trip(FORCED, true);
         stage.set_levels(ENABLE);
-        assert_eq!(stage.state(), PowerState::Fault);
+        assert_eq!(stage.state, PowerState::Fault);
         assert_eq!(effects(&mut stage), [ALARM]);
     }
 
@@ -375,6 +370,6 @@ mod tests {
         stage.trip(FORCED, true);
         stage.power_off();
         assert_eq!(effects(&mut stage), [ALARM, Effect::Enabled(false)]);
-        assert_eq!((stage.state(), stage.alarm()), (PowerState::NotReadyToSwitchOn, None));
+        assert_eq!((stage.state, stage.alarm()), (PowerState::NotReadyToSwitchOn, None));
     }
 }

@@ -21,10 +21,9 @@ use std::fmt;
 use std::io;
 use std::task::{Context, Poll};
 
-pub use pty::{Input, Left, Pty};
 pub use serial::Serial;
 pub use stream::{MASTER, StreamPort};
-pub use tcp::{Listener, TcpEvent, TcpPort};
+pub use tcp::{Listener, TcpPort};
 pub use tty::TtyPort;
 
 /// Bytes that a port hands over at once; a Modbus frame has 260 at most.

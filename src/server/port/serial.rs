@@ -265,7 +265,7 @@ pub(super) fn is_pseudo_terminal(path: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Pty;
+    use super::super::pty::Pty;
     use super::*;
     use std::future::poll_fn;
     use std::time::Duration;

@@ -168,7 +168,7 @@ mod tests {
         use rustix::fs::{AtFlags, CWD, Timespec, Timestamps, utimensat};
         let dir = tempfile::tempdir().unwrap();
         let at = dir.path().join("cell.tty");
-        let pty = super::super::Pty::open(None).unwrap();
+        let pty = super::super::pty::Pty::open(None).unwrap();
         let terminal = pty.path().to_owned();
         symlink(&terminal, &at).unwrap();
         drop(PortSymlink::create(&at, &terminal).unwrap());
@@ -188,7 +188,7 @@ mod tests {
         std::fs::create_dir(&inside).unwrap();
         let file = dir.path().join("notes.txt");
         std::fs::write(&file, "precious").unwrap();
-        let pty = super::super::Pty::open(None).unwrap();
+        let pty = super::super::pty::Pty::open(None).unwrap();
         let terminal = pty.path().to_owned();
         for (there, says) in [
             (&*inside, "exists"),
