@@ -36,6 +36,18 @@ fn redirected(folder: &Path, args: &[&str], redirections: &str) -> Command {
     shell
 }
 
+/// Runs a drive on TCP that says in `ready.json` where.
+const DRIVE: [&str; 6] = ["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--ready-file", "ready.json"];
+
+/// Such a drive with its streams in pipes, and its address.
+fn piped(folder: &Path) -> (Running, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_drivemu"));
+    command.current_dir(folder).args(DRIVE).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = Running(command.spawn().expect("it starts"));
+    let addr = child.addr(folder);
+    (child, addr)
+}
+
 fn code(mut command: Command) -> i32 {
     let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     let mut child = child.expect("it starts");
@@ -70,8 +82,7 @@ fn whatever_streams_are_the_verdict_stands() {
 fn drives_answer_on() {
     for redirections in ["2>/dev/full", "2>&-", ">&-", "<&- >&- 2>&-", ">/dev/full 2>/dev/full"] {
         let folder = folder();
-        let args = ["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--ready-file", "ready.json"];
-        let mut command = redirected(folder.path(), &args, redirections);
+        let mut command = redirected(folder.path(), &DRIVE, redirections);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut child = Running(command.spawn().expect("it starts"));
         let addr = child.addr(folder.path());
@@ -88,11 +99,7 @@ fn drives_answer_on() {
 #[test]
 fn a_reader_that_leaves_is_no_failure() {
     let folder = folder();
-    let args = ["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--ready-file", "ready.json"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_drivemu"));
-    command.current_dir(folder.path()).args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = Running(command.spawn().expect("it starts"));
-    let addr = child.addr(folder.path());
+    let (mut child, addr) = piped(folder.path());
     drop((child.0.stdout.take(), child.0.stderr.take()));
     for _ in 0..20 {
         ask(&addr);
@@ -113,11 +120,7 @@ fn a_reader_that_leaves_is_no_failure() {
 #[test]
 fn a_reader_that_never_reads_stops_nothing() {
     let folder = folder();
-    let args = ["run", "hcfa-x", "--tcp", "127.0.0.1:0", "--ready-file", "ready.json"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_drivemu"));
-    command.current_dir(folder.path()).args(args).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = Running(command.spawn().expect("it starts"));
-    let addr = child.addr(folder.path());
+    let (mut child, addr) = piped(folder.path());
     // Each client is worth some 60 bytes on stderr and as many on stdout; a pipe takes 64 KiB.
     for _ in 0..2500 {
         ask(&addr);

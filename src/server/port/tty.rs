@@ -97,6 +97,13 @@ enum TtyState {
     },
 }
 
+impl TtyState {
+    /// Gone; it is looked for after a while.
+    fn away() -> Self {
+        Self::Away { timer: Clock::wall_timer(LOOK_AGAIN), told: ErrorKind::NotFound }
+    }
+}
+
 impl TtyPort {
     /// Opens a pseudo-terminal for a line that is set to `settings`; with `link`, a symlink leads to it.
     ///
@@ -137,8 +144,7 @@ impl TtyPort {
     /// The port is gone, and is waited for.
     fn lose(&mut self, error: &io::Error) {
         warn!("{}: the port disappeared ({error}); waiting for it", self.name);
-        let timer = Clock::wall_timer(LOOK_AGAIN);
-        self.state = TtyState::Away { timer, told: ErrorKind::NotFound };
+        self.state = TtyState::away();
     }
 
     /// Goes on with what takes time. Is the terminal open and set as the line is?
@@ -184,12 +190,8 @@ impl TtyPort {
 
     /// What was written before has left: sets the port, and writes what has waited for that.
     fn moved(&mut self) {
-        let away =
-            TtyState::Away { timer: Clock::wall_timer(LOOK_AGAIN), told: ErrorKind::NotFound };
-        let TtyState::Moving { mut serial, queue, .. } = std::mem::replace(&mut self.state, away)
-        else {
-            return;
-        };
+        let state = std::mem::replace(&mut self.state, TtyState::away());
+        let TtyState::Moving { mut serial, queue, .. } = state else { return };
         let Settings { baud, format } = self.settings;
         let set = serial.retune(baud, format.data_bits, format.parity.letter(), format.stop_bits);
         if let Err(error) = set {
@@ -271,9 +273,7 @@ impl Port for TtyPort {
 
     fn set_line(&mut self, settings: Settings) {
         self.settings = settings;
-        let away =
-            TtyState::Away { timer: Clock::wall_timer(LOOK_AGAIN), told: ErrorKind::NotFound };
-        self.state = match std::mem::replace(&mut self.state, away) {
+        self.state = match std::mem::replace(&mut self.state, TtyState::away()) {
             TtyState::Open(Tty::Serial(serial)) => {
                 let (timer, queue) = (Clock::wall_timer(FLUSH_STEP), Vec::new());
                 TtyState::Moving { serial, patience: FLUSH, timer, queue }
